@@ -1,4 +1,4 @@
-//! Follows models from a file into a world: packed, listed, drawn, collided with.
+//! Tests models of a library: they are packed from files, listed, drawn in worlds, and agents collide with them.
 
 use std::path::{Path, PathBuf};
 
@@ -101,10 +101,10 @@ fn packing_is_deterministic_and_adding_continues_the_numbers() {
         "--collider",
         "hull",
     ];
-    let said = succeed(&arguments);
-    said.says("lighthouse  2");
-    said.says("3.00 m");
-    said.says("hull of");
+    let stdout = succeed(&arguments);
+    stdout.says("lighthouse  2");
+    stdout.says("3.00 m");
+    stdout.says("hull of");
     let listed = succeed(&["assets", "list", text(&library)]);
     assert_eq!(
         listed.lines().filter(|line| line.starts_with("lighthouse")).count(),
@@ -152,8 +152,8 @@ fn models_are_listed_and_drawn() {
         (&["assets", "show", "tent"], "708 × "),
     ] {
         let arguments = [arguments, &["--assets", text(&library), "-o", output]].concat();
-        let said = succeed(&arguments);
-        assert!(said.contains(expected), "{said}");
+        let stdout = succeed(&arguments);
+        assert!(stdout.contains(expected), "{stdout}");
         assert!(picture.exists());
     }
     let drawn = ["render", WORLD, "--view", "rgb", "--size", "64", "-o", output];
@@ -222,8 +222,8 @@ fn model_options_are_parsed_strictly() {
     let folder = scratch();
     let library = folder.path().join("town.assets");
     let pack = ["assets", "pack", MODEL, "-o", text(&library)];
-    let said = succeed(&[pack.as_slice(), &["--class", " Lamp "]].concat());
-    assert!(said.lines().any(|line| line.starts_with("lamp  ")), "{said}");
+    let stdout = succeed(&[pack.as_slice(), &["--class", " Lamp "]].concat());
+    assert!(stdout.lines().any(|line| line.starts_with("lamp  ")), "{stdout}");
     let error = fail(1, &[pack.as_slice(), &["--scale", "-1"]].concat());
     assert!(error.contains("scale: found -1, expected a number above 0"), "{error}");
     let error = fail(1, &[pack.as_slice(), &["--height", "-2.5"]].concat());

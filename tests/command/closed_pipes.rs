@@ -84,15 +84,15 @@ fn every_command_ends_quietly_without_a_reader() {
             (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
         };
         let (expected, _) = run(Stdio::null(), Stdio::piped());
-        let (code, said) = run(closed(), Stdio::piped());
+        let (code, stderr) = run(closed(), Stdio::piped());
         let is_answer = ANSWERS.iter().any(|answer| command.starts_with(answer));
         assert!(
             code == expected || (code == Some(0) && !is_answer),
-            "{command}, output closed: {code:?}\n{said}"
+            "{command}, output closed: {code:?}\n{stderr}"
         );
         assert!(
-            !said.contains("panicked") && !said.contains("Broken pipe"),
-            "{command}: {said}"
+            !stderr.contains("panicked") && !stderr.contains("Broken pipe"),
+            "{command}: {stderr}"
         );
         if quick_or_full(true, false) {
             continue;
@@ -113,10 +113,10 @@ fn help_that_cannot_be_written_is_an_error() {
             .open("/dev/full")
             .expect("Linux has it");
         let done = output(driftworld_in(root(), command).stdout(full));
-        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(
-            done.status.code() == Some(1) && said.contains("standard output:"),
-            "{command}: {said}"
+            done.status.code() == Some(1) && stderr.contains("standard output:"),
+            "{command}: {stderr}"
         );
     }
 }

@@ -18,7 +18,7 @@ fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
 }
 
 /// The output, without the folder's name.
-fn said(output: &Output, out: &Path) -> String {
+fn stdout_of(output: &Output, out: &Path) -> String {
     String::from_utf8_lossy(&output.stdout).replace(&out.display().to_string(), "OUT")
 }
 
@@ -41,8 +41,8 @@ fn transcript(lines: &str) -> String {
     let out = folder.path().join("out");
     let output = console(&[WORLD], &out, lines);
     let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{error}{}", said(&output, &out));
-    said(&output, &out)
+    assert_eq!(output.status.code(), Some(0), "{error}{}", stdout_of(&output, &out));
+    stdout_of(&output, &out)
 }
 
 /// The refusals of the console, line by line; nothing is written.
@@ -51,12 +51,12 @@ fn refused(lines: &str) -> String {
     let folder = scratch();
     let out = folder.path().join("out");
     let output = console(&[WORLD, "--keep-going"], &out, lines);
-    assert_eq!(output.status.code(), Some(1), "{}", said(&output, &out));
+    assert_eq!(output.status.code(), Some(1), "{}", stdout_of(&output, &out));
     let error = String::from_utf8_lossy(&output.stderr);
     let count = lines.lines().count();
     assert_eq!(error, format!("error: standard input: {count} commands failed\n"));
     assert!(!out.exists(), "nothing was written");
-    said(&output, &out)
+    stdout_of(&output, &out)
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn tour_transcript_is_unchanged() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    insta::assert_snapshot!("tour", without_hash(&said(&output, &out)));
+    insta::assert_snapshot!("tour", without_hash(&stdout_of(&output, &out)));
     let mut files: Vec<_> = std::fs::read_dir(&out)
         .expect("the tour wrote files")
         .map(|entry| entry.expect("the folder can be listed").file_name())
@@ -88,7 +88,7 @@ fn pipe_prints_the_same_as_a_script() {
     let script = std::fs::read_to_string("examples/console/tour.txt").expect("the tour is there");
     let by_script = console(&[WORLD, "--script", "examples/console/tour.txt"], &out, "");
     let by_pipe = console(&[WORLD], &out, &script);
-    assert_eq!(said(&by_script, &out), said(&by_pipe, &out));
+    assert_eq!(stdout_of(&by_script, &out), stdout_of(&by_pipe, &out));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn first_error_ends_a_script_with_its_line() {
         error,
         format!("error: {script}:4: found command \"stap\", expected one listed by help; did you mean \"step\"?\n")
     );
-    assert_eq!(said(&output, folder.path()).matches("> step 3").count(), 1);
+    assert_eq!(stdout_of(&output, folder.path()).matches("> step 3").count(), 1);
 }
 
 #[test]
@@ -173,12 +173,12 @@ fn variant_has_numbered_worlds() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let said = said(&output, folder.path());
-    let hashes: Vec<&str> = said
+    let transcript = stdout_of(&output, folder.path());
+    let hashes: Vec<&str> = transcript
         .lines()
         .filter_map(|line| line.strip_prefix("world      "))
         .collect();
-    assert_eq!(hashes.len(), 4, "{said}");
+    assert_eq!(hashes.len(), 4, "{transcript}");
     assert!(
         hashes[0] != hashes[1] && hashes[1] == hashes[2] && hashes[2] != hashes[3],
         "{hashes:?}"
@@ -194,15 +194,15 @@ fn l2explorer_messages_run_completely() {
     let out = folder.path().join("out");
     let lines = format!("send_message '{}'\nstep 2 1 0 0\nobjects\n", messages.display());
     let output = console(&[WORLD], &out, &lines);
-    let said = said(&output, &out);
+    let transcript = stdout_of(&output, &out);
     assert_eq!(
         output.status.code(),
         Some(0),
-        "{}{said}",
+        "{}{transcript}",
         String::from_utf8_lossy(&output.stderr)
     );
-    assert_eq!(said.matches("\"action\":\"state\"").count(), 2, "{said}");
-    assert!(said.contains("thing"), "{said}");
+    assert_eq!(transcript.matches("\"action\":\"state\"").count(), 2, "{transcript}");
+    assert!(transcript.contains("thing"), "{transcript}");
     assert!(out.join("l2explorer_screenshot.png").is_file());
 }
 

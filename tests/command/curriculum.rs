@@ -1,4 +1,4 @@
-//! `driftworld curriculum`: probes with their proof, forms, drifts, even steps, controls, pictures, errors.
+//! `driftworld curriculum`: probes and the distances that prove them, forms, drifts, even steps, controls, pictures, errors.
 
 use std::path::Path;
 
@@ -22,11 +22,11 @@ fn with_park() -> tempfile::TempDir {
 fn designed(arguments: &str) -> (Value, String) {
     let folder = with_park();
     let output = output(&mut driftworld_in(folder.path(), &format!("curriculum {arguments}")));
-    let beside = String::from_utf8(output.stderr).expect("the command prints UTF-8");
-    assert_eq!(output.status.code(), Some(0), "{arguments}: {beside}");
+    let stderr = String::from_utf8(output.stderr).expect("the command prints UTF-8");
+    assert_eq!(output.status.code(), Some(0), "{arguments}: {stderr}");
     let scenario =
         serde_json::from_slice(&output.stdout).expect("a scenario is JSON, and nothing else is printed with it");
-    (scenario, beside)
+    (scenario, stderr)
 }
 
 fn scenario(path: &Path) -> Value {
@@ -63,8 +63,8 @@ fn kinds(scenario: &Value) -> String {
 }
 
 /// The cells of a table's rows below the line that begins with `heading`.
-fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
-    let below = beside
+fn rows(stderr: &str, heading: &str) -> Vec<Vec<String>> {
+    let below = stderr
         .lines()
         .skip_while(|line| !line.trim_start().starts_with(heading));
     let cells = |line: &str| line.split_whitespace().map(str::to_owned).collect();
@@ -78,17 +78,17 @@ fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
 #[test]
 fn probe_of_each_element_proves_that_nothing_else_differs() {
     for (element, column) in [("state", 2), ("reward", 5), ("observation", 6)] {
-        let (scenario, beside) = designed(&format!("park.json --probe {element}"));
-        let rows = rows(&beside, "variant");
-        assert!(rows.len() >= 4, "{beside}");
+        let (scenario, stderr) = designed(&format!("park.json --probe {element}"));
+        let rows = rows(&stderr, "variant");
+        assert!(rows.len() >= 4, "{stderr}");
         assert!(
             rows[0][0].ends_with("#blue"),
-            "the default variant comes first: {beside}"
+            "the default variant comes first: {stderr}"
         );
         for (index, row) in rows.iter().enumerate() {
-            for (place, cell) in row.iter().enumerate().skip(2) {
-                let expected_zero = place != column || index == 0;
-                assert_eq!(cell == "0" || cell == "-", expected_zero, "{beside}");
+            for (cell_column, cell) in row.iter().enumerate().skip(2) {
+                let expected_zero = cell_column != column || index == 0;
+                assert_eq!(cell == "0" || cell == "-", expected_zero, "{stderr}");
             }
         }
         let distances: Vec<f64> = rows.iter().map(|row| row[column].parse().expect("a number")).collect();
@@ -100,8 +100,8 @@ fn probe_of_each_element_proves_that_nothing_else_differs() {
         assert_eq!(learned(&scenario), shown);
         for row in rows.iter().filter(|row| row[1] == "made") {
             assert!(
-                beside.contains(&format!("\n{} sets ", row[0])),
-                "its values are printed: {beside}"
+                stderr.contains(&format!("\n{} sets ", row[0])),
+                "its values are printed: {stderr}"
             );
         }
     }
@@ -111,20 +111,20 @@ fn probe_of_each_element_proves_that_nothing_else_differs() {
 fn every_element_of_the_five_tasks_can_be_probed() {
     let elements = ["state", "action", "transition", "reward", "observation"];
     for (number, task) in crate::looks_alone::TASKS.split(' ').enumerate() {
-        for (place, element) in elements.into_iter().enumerate() {
+        for (own_column, element) in elements.into_iter().enumerate() {
             // In the quick tier each task and each element once.
-            if quick_or_full(place != number, false) {
+            if quick_or_full(own_column != number, false) {
                 continue;
             }
-            let (_, beside) = designed(&format!("{task} --probe {element} --variants 5"));
-            let rows = rows(&beside, "variant");
-            assert_eq!(rows.len(), 5, "{beside}");
+            let (_, stderr) = designed(&format!("{task} --probe {element} --variants 5"));
+            let rows = rows(&stderr, "variant");
+            assert_eq!(rows.len(), 5, "{stderr}");
             for row in &rows[1..] {
                 for (column, cell) in row[2..7].iter().enumerate() {
-                    if column == place {
-                        assert!(cell.parse::<f64>().is_ok_and(|apart| apart > 0.0), "{beside}");
+                    if column == own_column {
+                        assert!(cell.parse::<f64>().is_ok_and(|distance| distance > 0.0), "{stderr}");
                     } else {
-                        assert!(cell == "0" || cell == "-", "{beside}");
+                        assert!(cell == "0" || cell == "-", "{stderr}");
                     }
                 }
             }
@@ -336,7 +336,7 @@ fn lifetimes_have_their_own_worlds_and_matching_experts() {
 fn drifts_lead_from_variant_to_variant_across_blocks() {
     let drift = |more: &str| {
         let (scenario, _) = designed(&format!("park.json#blue dusk --order given --drift cosine {more}"));
-        let said = |regime: &&Value| {
+        let describe = |regime: &&Value| {
             let drift = &regime["drift"];
             let or = |key: &str, default: f64| drift[key].as_f64().unwrap_or(default);
             assert_eq!(drift["schedule"], "cosine");
@@ -347,7 +347,7 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
                 drift["to"].as_str().unwrap_or_default()
             )
         };
-        regimes(&scenario, "learning").iter().map(said).collect::<Vec<_>>()
+        regimes(&scenario, "learning").iter().map(describe).collect::<Vec<_>>()
     };
     assert_eq!(drift(""), ["blue>dusk 0-1"]);
     assert_eq!(drift("--blocks 2"), ["blue>dusk 0-0.5", "blue>dusk 0.5-1"]);
@@ -356,17 +356,17 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
 #[test]
 fn even_steps_are_made_and_proven_or_their_reach_is_reported() {
     let steps = "park.json#blue --probe reward --step-distance 0.2 --tolerance 0.01 --steps";
-    let (scenario, beside) = designed(&format!("{steps} 5"));
-    let rows = rows(&beside, "variant");
-    assert_eq!(rows.len(), 6, "{beside}");
+    let (scenario, stderr) = designed(&format!("{steps} 5"));
+    let rows = rows(&stderr, "variant");
+    assert_eq!(rows.len(), 6, "{stderr}");
     for row in &rows[1..] {
         let reward: f64 = row[5].parse().expect("a number");
-        assert!((reward - 0.2).abs() <= 0.01, "{beside}");
+        assert!((reward - 0.2).abs() <= 0.01, "{stderr}");
         assert!(
             [2, 3, 4, 6]
                 .iter()
-                .all(|place| row[*place] == "0" || row[*place] == "-"),
-            "{beside}"
+                .all(|column| row[*column] == "0" || row[*column] == "-"),
+            "{stderr}"
         );
     }
     assert_eq!(learned(&scenario).len(), 6);
@@ -403,14 +403,14 @@ fn scenario_is_validated_against_its_tasks() {
             String::from_utf8_lossy(&output.stderr).into_owned(),
         )
     };
-    let (code, said) =
+    let (code, stderr) =
         validate(r#"{ "task": "find_objects", "variant": "blue", "drift": { "to": "duks" }, "count": 1 }"#);
     assert_eq!(code, Some(1));
-    said.says("(/blocks/0/regimes/0/drift/to): found \"duks\"");
-    said.says("did you mean \"dusk\"?");
-    let (code, said) = validate(r#"{ "task": "elsewhere.json", "variant": "blue", "count": 1 }"#);
+    stderr.says("(/blocks/0/regimes/0/drift/to): found \"duks\"");
+    stderr.says("did you mean \"dusk\"?");
+    let (code, stderr) = validate(r#"{ "task": "elsewhere.json", "variant": "blue", "count": 1 }"#);
     let expected = "the variants of elsewhere.json were not checked";
-    assert!(code == Some(1) && said.contains(expected), "{said}");
+    assert!(code == Some(1) && stderr.contains(expected), "{stderr}");
 }
 
 #[test]
@@ -466,11 +466,11 @@ fn audit_syncs_nothing_and_fails_if_it_cannot_test() {
         let mut command = driftworld_in(folder.path(), arguments);
         let (library, notes) = (folder.path().join("count.so"), folder.path().join("synced"));
         let run = output(command.env("LD_PRELOAD", library).env("SYNCED", &notes));
-        let said = String::from_utf8_lossy(&run.stdout).into_owned() + &String::from_utf8_lossy(&run.stderr);
-        assert_eq!(run.status.code(), Some(code), "{arguments}: {said}");
+        let text = String::from_utf8_lossy(&run.stdout).into_owned() + &String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(code), "{arguments}: {text}");
         let count = std::fs::metadata(&notes).map_or(0, |found| found.len());
         std::fs::remove_file(&notes).ok();
-        (count, said)
+        (count, text)
     };
     let design = "curriculum find_objects#blue find_objects#red --learn 4 --eval-episodes 2 -o";
     assert!(
@@ -478,8 +478,8 @@ fn audit_syncs_nothing_and_fails_if_it_cannot_test() {
         "what is written is kept"
     );
     assert!(synced(&format!("{design} drift.json --drift linear"), 0).0 > 0);
-    let (count, said) = synced("audit drift.json --lifetimes 2 --repeats 2", 1);
-    assert_eq!(count, 0, "{said}");
-    said.says("not tested");
-    said.says("not tested is not passed");
+    let (count, text) = synced("audit drift.json --lifetimes 2 --repeats 2", 1);
+    assert_eq!(count, 0, "{text}");
+    text.says("not tested");
+    text.says("not tested is not passed");
 }

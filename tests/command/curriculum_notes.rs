@@ -1,4 +1,4 @@
-//! Notes of `driftworld curriculum` on surprising designs, and files that it does not overwrite.
+//! Tests that `driftworld curriculum` prints notes on surprising designs and does not overwrite files.
 
 use std::path::Path;
 
@@ -9,25 +9,25 @@ fn design(more: &str) -> String {
     format!("curriculum find_objects#blue find_objects#red --learn 2 --eval-episodes 1 {more}")
 }
 
-/// Standard output and standard error; the command must succeed.
+/// Runs the command, which must succeed, and returns its standard output and standard error.
 #[track_caller]
-fn said(folder: &Path, more: &str) -> (String, String) {
+fn run_design(folder: &Path, more: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, &design(&format!("--worlds 0 {more}"))));
-    let beside = String::from_utf8(output.stderr).expect("text");
-    assert!(output.status.success(), "{more}: {beside}");
-    (String::from_utf8(output.stdout).expect("text"), beside)
+    let stderr = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success(), "{more}: {stderr}");
+    (String::from_utf8(output.stdout).expect("text"), stderr)
 }
 
 #[test]
 fn note_names_held_out_variants() {
     let folder = scratch();
-    let (_, beside) = said(folder.path(), "find_objects#dusk --hold-out find_objects#dusk");
+    let (_, stderr) = run_design(folder.path(), "find_objects#dusk --hold-out find_objects#dusk");
     let note = "note: find_objects#dusk is named and held out: it is evaluated and not learned";
-    assert!(beside.contains(note), "{beside}");
-    let (whole, beside) = said(folder.path(), "--hold-out find_objects#dusk");
-    assert!(!beside.contains("note:"), "{beside}");
+    assert!(stderr.contains(note), "{stderr}");
+    let (whole, stderr) = run_design(folder.path(), "--hold-out find_objects#dusk");
+    assert!(!stderr.contains("note:"), "{stderr}");
     // A bare name belongs to a task that is learned.
-    let (bare, _) = said(folder.path(), "--hold-out dusk");
+    let (bare, _) = run_design(folder.path(), "--hold-out dusk");
     assert_eq!(bare, whole);
 }
 
@@ -35,7 +35,7 @@ fn note_names_held_out_variants() {
 #[test]
 fn start_of_a_probe_is_the_base_of_comparison() {
     let folder = scratch();
-    said(
+    run_design(
         folder.path(),
         "--probe observation --start find_objects#blue --form permuted",
     );
@@ -45,34 +45,34 @@ fn start_of_a_probe_is_the_base_of_comparison() {
 fn note_reports_incomplete_squares() {
     let folder = scratch();
     let three = "find_objects#dusk --form permuted --lifetimes";
-    let (_, beside) = said(folder.path(), &format!("{three} 4 -o four"));
+    let (_, stderr) = run_design(folder.path(), &format!("{three} 4 -o four"));
     let note = "note: 4 lifetimes of 3 variants are not balanced";
     assert!(
-        beside.contains(note) && beside.contains("6 lifetimes, or a multiple of it"),
-        "{beside}"
+        stderr.contains(note) && stderr.contains("6 lifetimes, or a multiple of it"),
+        "{stderr}"
     );
-    let (_, beside) = said(folder.path(), &format!("{three} 12 -o twelve"));
-    assert!(!beside.contains("balanced"), "{beside}");
+    let (_, stderr) = run_design(folder.path(), &format!("{three} 12 -o twelve"));
+    assert!(!stderr.contains("balanced"), "{stderr}");
 }
 
 #[test]
 fn existing_files_in_a_folder_are_not_replaced() {
     let folder = scratch();
     let lifetimes = "--lifetimes 2 -o lives --experts experts";
-    said(folder.path(), lifetimes);
+    run_design(folder.path(), lifetimes);
     let file = folder.path().join("lives/curriculum-2.json");
     let before = std::fs::read(&file).expect("a scenario");
     let other = format!("{lifetimes} --seed 5");
-    let again = fail_in(folder.path(), 1, &design(&other));
-    again.says("lives/curriculum-1.json: found a file, expected none");
-    again.says("--force");
+    let error = fail_in(folder.path(), 1, &design(&other));
+    error.says("lives/curriculum-1.json: found a file, expected none");
+    error.says("--force");
     assert_eq!(std::fs::read(&file).expect("a scenario"), before);
     // Nothing is written if a later folder is in the way.
     std::fs::remove_dir_all(folder.path().join("lives")).expect("a folder");
-    let again = fail_in(folder.path(), 1, &design(&other));
-    assert!(again.contains("experts/curriculum-1-"), "{again}");
+    let error = fail_in(folder.path(), 1, &design(&other));
+    assert!(error.contains("experts/curriculum-1-"), "{error}");
     assert!(!folder.path().join("lives").exists());
-    said(folder.path(), &format!("{other} --force"));
+    run_design(folder.path(), &format!("{other} --force"));
     assert_ne!(std::fs::read(&file).expect("a scenario"), before);
 }
 
@@ -99,7 +99,7 @@ fn reward_probe_reports_whether_the_optimum_changes() {
 #[test]
 fn tables_of_lifetimes_name_both_ends_of_a_drift() {
     let folder = scratch();
-    let (shown, _) = said(folder.path(), "--drift linear --lifetimes 2 -o lives");
+    let (shown, _) = run_design(folder.path(), "--drift linear --lifetimes 2 -o lives");
     assert!(
         shown
             .lines()
@@ -113,8 +113,8 @@ fn tables_of_lifetimes_name_both_ends_of_a_drift() {
 fn note_says_that_experts_of_a_mixture_learn_other_worlds() {
     let folder = scratch();
     let mixed = "--drift linear --experts experts -o x.json";
-    let (_, beside) = said(folder.path(), &format!("{mixed} --mix=task"));
-    assert!(beside.contains("note: experts of a mixture"), "{beside}");
-    let (_, beside) = said(folder.path(), &format!("{mixed} --force"));
-    assert!(!beside.contains("note:"), "{beside}");
+    let (_, stderr) = run_design(folder.path(), &format!("{mixed} --mix=task"));
+    assert!(stderr.contains("note: experts of a mixture"), "{stderr}");
+    let (_, stderr) = run_design(folder.path(), &format!("{mixed} --force"));
+    assert!(!stderr.contains("note:"), "{stderr}");
 }

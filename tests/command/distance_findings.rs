@@ -1,4 +1,4 @@
-//! Bugs that an audit of the command's distances found, each with the former answer.
+//! Regression tests of bugs in distances that an audit of the command found. Comments give the former output.
 
 use serde_json::Value;
 
@@ -24,12 +24,12 @@ fn distance_of_a_pair_does_not_depend_on_the_list() {
     let many = [&pair[..], &["get_to_goal#plain", "find_objects#wide"]].concat();
     for (by, lists) in [("parameters", vec![&more]), ("worlds", vec![&more, &many])] {
         let by = ["--by", by];
-        let said = succeed(&[&["distance"], &pair[..], &by, &["--json"]].concat());
-        let said: Value = serde_json::from_str(&said).expect("it is JSON");
+        let stdout = succeed(&[&["distance"], &pair[..], &by, &["--json"]].concat());
+        let stdout: Value = serde_json::from_str(&stdout).expect("it is JSON");
         let alone = first_two(&pair, &by);
         assert!(
-            (said["total"].as_f64().expect("it is a number") - alone).abs() < 1e-12,
-            "{said}"
+            (stdout["total"].as_f64().expect("it is a number") - alone).abs() < 1e-12,
+            "{stdout}"
         );
         for list in lists {
             assert_eq!(first_two(list, &by), alone, "{by:?}");
@@ -56,13 +56,16 @@ fn unread_parameters_make_no_distance() {
         ("find_objects#blue", "T", "reach"),
         ("get_to_goal#plain", "R", "hazard_reward"),
     ] {
-        let said = succeed(&["vary", variant, "--element", element, "--distance", "0.5", "--json"]);
-        let found: Value = serde_json::from_str(&said).expect("it is JSON");
+        let stdout = succeed(&["vary", variant, "--element", element, "--distance", "0.5", "--json"]);
+        let found: Value = serde_json::from_str(&stdout).expect("it is JSON");
         let values = found["variant"]["found"].as_object().expect("it names values");
-        assert!(found["held"].as_object().is_some_and(|held| !held.is_empty()), "{said}");
+        assert!(
+            found["held"].as_object().is_some_and(|held| !held.is_empty()),
+            "{found}"
+        );
         assert!(
             values.len() == 2 && values.contains_key("extends") && !values.contains_key(idle),
-            "{said}"
+            "{stdout}"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! `driftworld distance`, `order` and `curriculum` by each measure.
+//! Tests `driftworld distance`, `order` and `curriculum` with each measure of distance.
 
 use super::run_files::write;
 use super::terminal::{Says, json, json_in, scratch, succeed_in};
@@ -31,9 +31,9 @@ fn pictures_distinguish_visible_changes_only() {
             (&by.into(), &format!("by {by}").into())
         );
     }
-    let said = succeed_in(folder.path(), "distance green.json sand.json --by pictures --explain");
-    said.says("looks of surroundings");
-    said.says("oklab, elsewhere");
+    let stdout = succeed_in(folder.path(), "distance green.json sand.json --by pictures --explain");
+    stdout.says("looks of surroundings");
+    stdout.says("oklab, elsewhere");
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn order_and_curriculum_accept_the_same_names() {
 fn shares_are_of_the_tasks_diameter() {
     let between = |scale: &str| json(&format!("distance find_objects#red dusk --scale {scale} --json"));
     let (units, share) = (between("units"), between("share"));
-    let said = share["compared"].as_str().expect("it says how");
-    let (_, diameter) = said.split_once("diameter of ").expect("the diameter is printed");
+    let description = share["compared"].as_str().expect("it says how");
+    let (_, diameter) = description.split_once("diameter of ").expect("the diameter is printed");
     let diameter: f64 = diameter.parse().expect("it is a number");
     let [units, share] = [units, share].map(|found| found["total"].as_f64().expect("a number"));
     assert!(

@@ -22,11 +22,11 @@ fn task(affects: &str) -> String {
 
 #[test]
 fn declared_and_measured_elements_are_shown_together() {
-    let said = succeed(&["elements", "blue_red_green", "--worlds", "3"]);
-    assert!(said.starts_with("blue_red_green, beside a:"), "{said}");
+    let stdout = succeed(&["elements", "blue_red_green", "--worlds", "3"]);
+    assert!(stdout.starts_with("blue_red_green, beside a:"), "{stdout}");
     let row = |name: &str| {
-        let line = said.lines().find(|line| line.starts_with(&format!("{name}  ")));
-        let words = line.unwrap_or_else(|| panic!("{name} in {said}")).split_whitespace();
+        let line = stdout.lines().find(|line| line.starts_with(&format!("{name}  ")));
+        let words = line.unwrap_or_else(|| panic!("{name} in {stdout}")).split_whitespace();
         words.map(str::to_owned).collect::<Vec<_>>()
     };
     assert_eq!(row("b")[1..6], ["S", "R", "S", "yes", "3"]);
@@ -61,16 +61,16 @@ fn contradiction_is_reported_with_its_first_case() {
     let lamp = |affects: &str| fs::write(folder.path().join("lamp.json"), task(affects)).expect("the folder is ours");
     lamp("R");
     for arguments in ["elements lamp.json", "validate --elements lamp.json"] {
-        let said = fail_in(folder.path(), 1, arguments);
+        let error = fail_in(folder.path(), 1, arguments);
         assert!(
-            said.contains(
+            error.contains(
                 "lamp#dusk: found that phi (emission) differs from day: in world 0, step 0 (still), the rgb image"
             ),
-            "{said}"
+            "{error}"
         );
-        said.says("expected no more than light (R) affects; add \"phi\" to its \"affects\"");
-        said.says("warning: ");
-        said.says("lamp#reaching: reach made no difference");
+        error.says("expected no more than light (R) affects; add \"phi\" to its \"affects\"");
+        error.says("warning: ");
+        error.says("lamp#reaching: reach made no difference");
     }
     let report = output(&mut driftworld_in(
         folder.path(),
@@ -83,8 +83,8 @@ fn contradiction_is_reported_with_its_first_case() {
     );
     // Follows the advice.
     lamp("phi");
-    let said = succeed_in(folder.path(), "validate --elements lamp.json");
-    assert!(said.contains("a valid task"), "{said}");
+    let stdout = succeed_in(folder.path(), "validate --elements lamp.json");
+    assert!(stdout.contains("a valid task"), "{stdout}");
     succeed_in(folder.path(), "elements lamp.json");
 }
 
@@ -96,9 +96,9 @@ fn scenario_is_refused_for_false_claims_of_its_tasks() {
     fs::write(folder.path().join("s.json"), scenario).unwrap();
     for (affects, is_sound) in [("phi", true), ("R", false)] {
         fs::write(folder.path().join("lamp.json"), task(affects)).unwrap();
-        let said = output(&mut driftworld_in(folder.path(), "validate s.json --elements --json"));
-        assert_eq!(said.status.success(), is_sound, "{affects}");
-        let verdicts: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+        let done = output(&mut driftworld_in(folder.path(), "validate s.json --elements --json"));
+        assert_eq!(done.status.success(), is_sound, "{affects}");
+        let verdicts: Value = serde_json::from_slice(&done.stdout).expect("JSON");
         assert_eq!(verdicts[0]["valid"], is_sound);
         assert_eq!(verdicts[0]["elements"][0]["task"], "lamp", "{verdicts}");
     }
@@ -115,9 +115,9 @@ fn more_steps_find_later_differences() {
     fs::write(folder.path().join("late.json"), late).unwrap();
     let warned = |steps: u32| {
         let line = format!("validate late.json --elements --steps {steps}");
-        let said = output(&mut driftworld_in(folder.path(), &line));
-        assert!(said.status.success());
-        String::from_utf8(said.stderr).unwrap()
+        let done = output(&mut driftworld_in(folder.path(), &line));
+        assert!(done.status.success());
+        String::from_utf8(done.stderr).unwrap()
     };
     let soon = warned(50);
     soon.says("period made no difference");
@@ -160,12 +160,12 @@ fn remarks_on_worlds_are_shown_for_the_task_that_draws_them() {
         ("", "in 2 of 2 worlds, of 2 variants"),
         ("--worlds 7", "in 14 of 14 worlds, of 2 variants"),
     ] {
-        let said = output(&mut driftworld_in(
+        let done = output(&mut driftworld_in(
             folder.path(),
             &format!("validate odd.json {arguments}"),
         ));
-        assert!(said.status.success());
-        let warnings = String::from_utf8(said.stderr)
+        assert!(done.status.success());
+        let warnings = String::from_utf8(done.stderr)
             .unwrap()
             .split_whitespace()
             .collect::<Vec<_>>()

@@ -14,15 +14,15 @@ const TASK: &str = r#"{ "name": "river", "world": {
   "groups": [{ "name": "goal", "count": 1, "placement": { "box": { "low": [-6, -4], "high": [6, 6] } },
     "object": { "class": "barrel", "tag": "goal", "reward": 1, "reward_stimulus": ["AgentCollide"] } }] }"#;
 
-/// The counts of each word in the column `ended_by` of a log.
+/// How often each word occurs in the column `ended_by` of a log.
 fn counted(log: &std::path::Path) -> BTreeMap<String, u64> {
     let mut counts = BTreeMap::new();
     for (_, table) in files(log).into_iter().filter(|(name, _)| is_table(name)) {
         let mut lines = table.lines().map(|line| line.split('\t').collect::<Vec<_>>());
         let header = lines.next().expect("a table has a header");
-        let place = header.iter().position(|name| *name == "ended_by").expect("rows say it");
+        let column = header.iter().position(|name| *name == "ended_by").expect("ended_by");
         for row in lines {
-            *counts.entry(row[place].to_owned()).or_default() += 1;
+            *counts.entry(row[column].to_owned()).or_default() += 1;
         }
     }
     counts
@@ -48,19 +48,19 @@ fn run_counts_what_ended_episodes_even_when_resumed() {
     for agent in ["random", "onrails", "still"] {
         let log = folder.path().join(agent);
         let arguments = ["run", text(&scenario), "--agent", agent, "--output", text(&log)];
-        let said = succeed(&[&arguments[..], &["--json"]].concat());
-        let said: serde_json::Value = serde_json::from_str(&said).expect("--json prints JSON");
+        let summary = succeed(&[&arguments[..], &["--json"]].concat());
+        let summary: serde_json::Value = serde_json::from_str(&summary).expect("--json prints JSON");
         let counts = counted(&log);
         assert_eq!(counts.values().sum::<u64>(), 42);
-        assert_eq!(said["ended_by"], serde_json::json!(counts), "{agent}");
+        assert_eq!(summary["ended_by"], serde_json::json!(counts), "{agent}");
         // The log is complete: nothing is run, and the same counts are printed.
-        let again = succeed(&[&arguments[..], &["--resume"]].concat());
+        let resumed = succeed(&[&arguments[..], &["--resume"]].concat());
         let mut listed: Vec<(&String, &u64)> = counts.iter().collect();
         listed.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
         let listed: Vec<String> = listed.iter().map(|(word, count)| format!("{word} {count}")).collect();
         assert!(
-            again.contains(&format!("\nended by: {}\n", listed.join(", "))),
-            "{again}"
+            resumed.contains(&format!("\nended by: {}\n", listed.join(", "))),
+            "{resumed}"
         );
         seen.extend(counts);
     }
@@ -74,10 +74,10 @@ fn episode_is_drawn_frame_by_frame() {
     let render = "render examples/worlds/key_corridor.json#closed --size 64 -o";
     let episode = [&render.split(' ').collect::<Vec<_>>()[..], &[text(&path)]].concat();
     let size = |more: &[&str]| {
-        let said = succeed(&[&episode[..], &["--view", "episode"], more].concat());
-        assert!(path.exists(), "{said}");
-        let size = said.trim().trim_end_matches(" pixels)").rsplit(" (").next();
-        let size = size.expect("it says the size");
+        let stdout = succeed(&[&episode[..], &["--view", "episode"], more].concat());
+        assert!(path.exists(), "{stdout}");
+        let size = stdout.trim().trim_end_matches(" pixels)").rsplit(" (").next();
+        let size = size.expect("the size is printed");
         let (width, height) = size.split_once(" × ").expect("it has two sides");
         [width, height].map(|side| side.parse::<u32>().expect("it is a number"))
     };

@@ -17,7 +17,7 @@ use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in}
 use crate::files_below::files_below;
 
 /// Maximum number of faults in one lifetime; after that it runs undisturbed.
-const MOST: u64 = 12;
+const MAX_FAULTS: u64 = 12;
 
 /// The time of all rows, so that logs can be compared byte for byte.
 const CLOCK: (&str, &str) = ("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z");
@@ -78,7 +78,7 @@ fn scenario(folder: &Path) {
 }
 
 /// Starts or resumes a run and applies one fault; returns whether the run ended before the fault.
-fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rng: &mut Rng) -> bool {
+fn run_with_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rng: &mut Rng) -> bool {
     let kind = rng.below(4);
     if kind == 0 {
         let ended = output(&mut with_room(folder, 1 + rng.below(size / 512 + 1), arguments));
@@ -146,8 +146,8 @@ fn disturbed_runs_continue_to_the_same_bytes() {
             (files, start.elapsed())
         });
         let largest = expected.values().map(Vec::len).max().unwrap_or_default() as u64;
-        for _ in 0..MOST.min(left) {
-            if meet_a_fault(folder, &run("log"), *took, largest, &mut rng) {
+        for _ in 0..MAX_FAULTS.min(left) {
+            if run_with_fault(folder, &run("log"), *took, largest, &mut rng) {
                 break;
             }
             left -= 1;

@@ -1,4 +1,4 @@
-//! A newcomer's first hour: each test was once a defect (docs of issue 24).
+//! Regression tests of defects that newcomers found in their first hour with the command (issue 24).
 
 use std::path::Path;
 
@@ -206,14 +206,14 @@ fn every_written_file_is_reported_in_one_line() {
     ] {
         let shown = succeed_in(path, command);
         for file in files {
-            let told = |line: &str| line.starts_with(&format!("wrote {file}"));
-            assert!(shown.lines().any(told), "{command}: {shown}");
+            let is_report = |line: &str| line.starts_with(&format!("wrote {file}"));
+            assert!(shown.lines().any(is_report), "{command}: {shown}");
         }
     }
     // If standard output holds data, the line is on standard error.
     let done = output(&mut driftworld_in(path, "order bush.json --matrix m.json --json"));
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(said.contains("wrote m.json"), "{said}");
+    let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(stderr.contains("wrote m.json"), "{stderr}");
     serde_json::from_slice::<serde_json::Value>(&done.stdout).expect("standard output is JSON alone");
 }
 
@@ -258,8 +258,8 @@ fn documents_are_read_from_standard_input() {
     let folder = with_berries();
     let path = folder.path();
     let read = |input: &str, arguments: &[&str]| {
-        let (code, shown, said) = fed(path, input, arguments);
-        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+        let (code, shown, stderr) = fed(path, input, arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {stderr}");
         shown
     };
     assert!(read(BERRIES, &["validate", "-"]).contains("standard input: a valid task spec"));
@@ -277,8 +277,8 @@ fn documents_are_read_from_standard_input() {
     let matrix = succeed_in(path, &["order", "bush.json", "--json"]);
     let matrix: serde_json::Value = serde_json::from_str(&matrix).expect("it is JSON");
     read(&matrix["matrix"].to_string(), &["order", "--from-matrix", "-"]);
-    let (code, _, said) = fed(path, "{", &["validate", "-"]);
-    assert!(code == Some(1) && said.contains("standard input:1:"), "{said}");
+    let (code, _, stderr) = fed(path, "{", &["validate", "-"]);
+    assert!(code == Some(1) && stderr.contains("standard input:1:"), "{stderr}");
 }
 
 // 9. Validate, then die.
@@ -287,16 +287,16 @@ fn documents_are_read_from_standard_input() {
 fn documents_from_new_and_export_validate_sample_and_run() {
     let folder = scratch();
     let path = folder.path();
-    let said = succeed_in(path, &["new", "berries"]);
-    said.says("wrote berries.json");
-    said.says("driftworld validate berries.json");
+    let stdout = succeed_in(path, &["new", "berries"]);
+    stdout.says("wrote berries.json");
+    stdout.says("driftworld validate berries.json");
     // Follows the advice.
-    let advised: Vec<Vec<&str>> = said
+    let advised: Vec<Vec<&str>> = stdout
         .lines()
         .filter_map(|line| line.strip_prefix("  driftworld "))
         .map(|line| line.split(' ').collect())
         .collect();
-    assert_eq!(advised.len(), 6, "{said}");
+    assert_eq!(advised.len(), 6, "{stdout}");
     for arguments in advised {
         // Small enough for a test.
         let small: Vec<&str> = arguments
@@ -310,8 +310,8 @@ fn documents_from_new_and_export_validate_sample_and_run() {
             .collect();
         succeed_in(path, &small);
     }
-    let again = fail_in(path, 1, &["new", "berries"]);
-    assert!(again.contains("--force"), "{again}");
+    let error = fail_in(path, 1, &["new", "berries"]);
+    assert!(error.contains("--force"), "{error}");
     succeed_in(path, &["export", "select_object", "--name", "mine"]);
     succeed_in(path, &["validate", "mine.json"]);
 }
@@ -326,12 +326,12 @@ fn all_mistakes_are_reported_at_once() {
         "groups": [{ "name": "g", "count": 1, "object": { "class": "bushh" }, "placement": { "box": { "low": [0, 0], "high": [1, 1] } } }],
         "variants": { "a": { "extends": "c" } } }"#;
     std::fs::write(folder.path().join("t.json"), task).expect("the folder is ours");
-    let said = fail_in(folder.path(), 1, &["validate", "t.json"]);
+    let error = fail_in(folder.path(), 1, &["validate", "t.json"]);
     for place in "/parameters/light/default /require/0 /world/max_steps \
          /world/environment_params/light_intensity /groups/0/object/class /variants/a/extends"
         .split(' ')
     {
-        assert!(said.contains(place), "{place}: {said}");
+        assert!(error.contains(place), "{place}: {error}");
     }
 }
 
@@ -347,8 +347,8 @@ fn unknown_class_error_names_the_nearest() {
         ("house", "building"),
     ] {
         std::fs::write(folder.path().join("w.json"), world(class)).expect("the folder is ours");
-        let said = fail_in(folder.path(), 1, &["validate", "w.json"]);
-        assert!(said.contains(&format!("did you mean {near:?}?")), "{said}");
+        let error = fail_in(folder.path(), 1, &["validate", "w.json"]);
+        assert!(error.contains(&format!("did you mean {near:?}?")), "{error}");
     }
 }
 
@@ -356,10 +356,10 @@ fn unknown_class_error_names_the_nearest() {
 fn readable_files_are_judged_beside_unreadable_ones() {
     let folder = with_berries();
     let done = output(&mut driftworld_in(folder.path(), "validate missing.json bush.json"));
-    let [shown, said] = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let [shown, stderr] = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(shown.contains("bush.json: a valid task spec"), "{shown}");
-    said.says("missing.json: cannot be read");
-    said.says("1 of 2 files refused");
+    stderr.says("missing.json: cannot be read");
+    stderr.says("1 of 2 files refused");
 }
 
 // 10. Answers that help.
@@ -370,8 +370,8 @@ fn byte_order_mark_and_three_numbers_are_handled() {
     std::fs::write(folder.path().join("bom.json"), format!("\u{feff}{BERRIES}")).expect("the folder is ours");
     succeed_in(folder.path(), "validate bom.json");
     succeed_in(folder.path(), "sample bom.json");
-    let (_, _, said) = fed(folder.path(), "step 1 2.5 0\n", &["console", "find_objects"]);
-    assert!(said.contains("write: step 1 1 2.5 0"), "{said}");
+    let (_, _, stderr) = fed(folder.path(), "step 1 2.5 0\n", &["console", "find_objects"]);
+    assert!(stderr.contains("write: step 1 1 2.5 0"), "{stderr}");
 }
 
 // 11. The order of what is named.

@@ -1,4 +1,4 @@
-//! The `driftworld` command in general: output, exit codes, messages, files that are whole or absent.
+//! Tests of the `driftworld` command in general: output, exit codes, messages, and that no file is written partially.
 
 use super::terminal::{
     Says, driftworld_in, fail, fail_in, json, json_in, output, scratch, subcommands, succeed, succeed_in, text,
@@ -40,8 +40,8 @@ fn doctor_lists_the_working_renderers() {
 
 #[test]
 fn validate_accepts_the_examples_and_l2explorer_maps() {
-    let said = succeed(&["validate", "examples/tasks"]);
-    assert_eq!(said.lines().count(), 7, "{said}");
+    let stdout = succeed(&["validate", "examples/tasks"]);
+    assert_eq!(stdout.lines().count(), 7, "{stdout}");
     let files = std::fs::read_dir("examples/curricula").expect("the folder can be read");
     let count = files
         .filter(|file| {
@@ -67,9 +67,9 @@ fn validate_accepts_the_examples_and_l2explorer_maps() {
 fn verdict_on_invalid_json_is_json() {
     let folder = scratch();
     std::fs::write(folder.path().join("world.json"), "{,}").expect("the scratch folder can be written");
-    let said = output(&mut driftworld_in(folder.path(), "validate --json world.json"));
-    let said: serde_json::Value = serde_json::from_slice(&said.stdout).expect("--json prints JSON also for bad files");
-    assert_eq!(said[0]["valid"], false);
+    let done = output(&mut driftworld_in(folder.path(), "validate --json world.json"));
+    let verdicts: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON also for bad files");
+    assert_eq!(verdicts[0]["valid"], false);
 }
 
 #[test]
@@ -142,12 +142,12 @@ fn photographs_match_their_manifest() {
         "objects": [{ "class": "../../out", "coordinates": [0, 0] }, { "class": "Car", "coordinates": [9, 9] }] }"#;
     std::fs::write(&world, text_of_world).expect("the scratch folder can be written");
     let out = folder.path().join("deep/photographs");
-    let said = succeed(&format!(
+    let stdout = succeed(&format!(
         "photograph {} -o {} --modalities rgb,depth",
         world.display(),
         out.display()
     ));
-    assert!(said.contains("2 objects in 24 pictures of 84 × 84 pixels"), "{said}");
+    stdout.says("2 objects in 24 pictures of 84 × 84 pixels");
     let manifest = std::fs::read_to_string(out.join("manifest.json")).expect("the manifest was written");
     let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("the manifest is JSON");
     let listed = manifest["photographs"].as_array().expect("it lists photographs");
@@ -173,9 +173,9 @@ fn matrix_is_the_same_in_every_format_and_gives_the_same_order() {
     for name in ["matrix.csv", "matrix.json"] {
         let path = at(name);
         succeed(&["order", "find_objects", "--matrix", text(&path)]);
-        let again = succeed(&[&["order", "--from-matrix", text(&path)][..], &ends].concat());
+        let reread = succeed(&[&["order", "--from-matrix", text(&path)][..], &ends].concat());
         // The measure of a matrix from a file is unknown.
-        assert_eq!(again, plain.replace(" by parameters", ""), "{name}");
+        assert_eq!(reread, plain.replace(" by parameters", ""), "{name}");
     }
     let picture = at("path.png");
     succeed(&["order", "find_objects", "--plot", text(&picture)]);
@@ -233,15 +233,15 @@ fn variant_is_found_at_a_distance_and_can_be_pasted() {
 fn found_variant_is_appended_to_its_task() {
     let folder = scratch();
     let path = folder.path();
-    let asked = "vary find_objects#red --element O --distance 0.5 -o mine.json";
-    let told = succeed_in(path, asked);
-    assert!(told.contains("\nholds: "), "what stays is printed:\n{told}");
+    let command = "vary find_objects#red --element O --distance 0.5 -o mine.json";
+    let stdout = succeed_in(path, command);
+    assert!(stdout.contains("\nholds: "), "what stays is printed:\n{stdout}");
     let distance = json_in(path, "distance mine.json#red mine.json#found --json").to_string();
     assert!(distance.contains("0.5") || distance.contains("0.4999"), "{distance}");
-    let error = fail_in(path, 1, asked);
+    let error = fail_in(path, 1, command);
     error.says("found a file, expected none");
     error.says("--force");
-    succeed_in(path, &format!("{asked} --force"));
+    succeed_in(path, &format!("{command} --force"));
 }
 
 #[test]

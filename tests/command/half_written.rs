@@ -1,4 +1,4 @@
-//! If `sample` fails, is stopped or is killed, no partial output remains.
+//! Tests that `sample` leaves no partial output if it fails, is stopped or is killed.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -18,13 +18,13 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 /// Starts a `sample` and waits until it writes into its folder.
-fn begun(folder: &Path) -> Child {
+fn start_sample(folder: &Path) -> Child {
     let arguments = [&["sample"], &MANY[..], &["-o", "worlds.jsonl"]].concat();
     let child = driftworld_in(folder, &arguments)
         .stderr(Stdio::piped())
         .spawn()
         .expect("the command starts");
-    let patience = Instant::now() + Duration::from_secs(20);
+    let deadline = Instant::now() + Duration::from_secs(20);
     let is_written = || {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         entries
@@ -32,7 +32,7 @@ fn begun(folder: &Path) -> Child {
             .any(|file| file.len() > 0)
     };
     while !is_written() {
-        assert!(Instant::now() < patience, "nothing is written");
+        assert!(Instant::now() < deadline, "nothing is written");
         std::thread::yield_now();
     }
     child
@@ -42,7 +42,7 @@ fn begun(folder: &Path) -> Child {
 fn stopped_sample_leaves_nothing() {
     for (name, number) in signals() {
         let folder = scratch();
-        let child = begun(folder.path());
+        let child = start_sample(folder.path());
         signal(&child, name);
         let done = child.wait_with_output().expect("it ends");
         let error = String::from_utf8_lossy(&done.stderr).into_owned();
@@ -59,7 +59,7 @@ fn stopped_sample_leaves_nothing() {
 fn leftovers_of_a_killed_sample_are_removed_but_not_files_in_progress() {
     let folder = scratch();
     let path = folder.path();
-    let mut child = begun(path);
+    let mut child = start_sample(path);
     // A second process that writes the same file at the same time removes nothing.
     succeed_in(path, "sample find_objects --count 3 --jsonl -o worlds.jsonl");
     assert_eq!(names(path).len(), 2, "{:?}", names(path));

@@ -27,12 +27,12 @@ struct Stage {
     folder: tempfile::TempDir,
     tried: BTreeSet<String>,
     /// Hostile output found.
-    let_through: Vec<String>,
+    leaks: Vec<String>,
 }
 
 /// Whether a character must not appear in the output.
-fn is_hostile(letter: char) -> bool {
-    is_unprintable(letter) && letter != '\n' && letter != '\t'
+fn is_hostile(c: char) -> bool {
+    is_unprintable(c) && c != '\n' && c != '\t'
 }
 
 impl Stage {
@@ -50,8 +50,8 @@ impl Stage {
     #[track_caller]
     fn run(&mut self, arguments: &[&str]) -> Output {
         self.tried.insert(arguments[0].to_owned());
-        let said = output(driftworld_in(self.path(), arguments).env("COLUMNS", "200"));
-        for bytes in [&said.stdout, &said.stderr] {
+        let done = output(driftworld_in(self.path(), arguments).env("COLUMNS", "200"));
+        for bytes in [&done.stdout, &done.stderr] {
             let shown = String::from_utf8_lossy(bytes);
             let raw = shown.find(is_hostile);
             // A line break within a table's cell belongs to the cell.
@@ -60,37 +60,37 @@ impl Stage {
             if raw.is_some() || faked || shown.contains("panicked") {
                 let from = shown.floor_char_boundary(raw.unwrap_or(0).saturating_sub(80));
                 let part: String = shown[from..].chars().take(600).collect();
-                self.let_through.push(format!("{arguments:?}: {part:?}"));
+                self.leaks.push(format!("{arguments:?}: {part:?}"));
             }
         }
         assert!(
-            matches!(said.status.code(), Some(0..=2)),
+            matches!(done.status.code(), Some(0..=2)),
             "{arguments:?}: {:?}",
-            said.status
+            done.status
         );
-        said
+        done
     }
 
     /// Runs the command, which must succeed.
     #[track_caller]
     fn succeed(&mut self, arguments: &[&str]) -> String {
-        let said = self.run(arguments);
-        let error = String::from_utf8_lossy(&said.stderr);
-        assert_eq!(said.status.code(), Some(0), "{arguments:?}: {error}");
-        String::from_utf8(said.stdout).expect("the command prints UTF-8")
+        let done = self.run(arguments);
+        let error = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{arguments:?}: {error}");
+        String::from_utf8(done.stdout).expect("the command prints UTF-8")
     }
 
     /// Runs the command, which must fail.
     #[track_caller]
     fn fail(&mut self, arguments: &[&str]) -> String {
-        let said = self.run(arguments);
+        let done = self.run(arguments);
         assert_ne!(
-            said.status.code(),
+            done.status.code(),
             Some(0),
             "{arguments:?}: {}",
-            String::from_utf8_lossy(&said.stdout)
+            String::from_utf8_lossy(&done.stdout)
         );
-        String::from_utf8(said.stderr).expect("the command prints UTF-8")
+        String::from_utf8(done.stderr).expect("the command prints UTF-8")
     }
 }
 
@@ -159,14 +159,14 @@ impl Stage {
         Self {
             folder: scratch(),
             tried: BTreeSet::new(),
-            let_through: Vec::new(),
+            leaks: Vec::new(),
         }
     }
 
     /// Fails with all hostile output found, and if one of these subcommands was not tried.
     #[track_caller]
     fn close(self, commands: impl IntoIterator<Item = String>) {
-        assert!(self.let_through.is_empty(), "{}", self.let_through.join("\n"));
+        assert!(self.leaks.is_empty(), "{}", self.leaks.join("\n"));
         for command in commands {
             assert!(self.tried.contains(&command), "{command} was not tried");
         }
@@ -178,7 +178,7 @@ fn no_subcommand_prints_hostile_documents_unescaped() {
     let mut stage = Stage::new();
     documents(&mut stage);
     worlds(&mut stage);
-    lives(&mut stage);
+    runs(&mut stage);
     // New subcommands must be tried here, too.
     let mut commands = subcommands();
     let others: Vec<&str> = OF_ARGUMENTS.split(' ').chain(OF_LOGS).collect();
@@ -307,7 +307,7 @@ fn worlds(stage: &mut Stage) {
     stage.fail(&["assets", "list", text(&library)]);
 }
 
-fn lives(stage: &mut Stage) {
+fn runs(stage: &mut Stage) {
     let script = format!("touch {}\n", HOSTILE.replace(['\r', '\n'], ""));
     write(&stage.path().join("agent.txt"), &script);
     let name: String = HOSTILE.chars().take(60).collect();
@@ -343,7 +343,7 @@ fn lives(stage: &mut Stage) {
     }
     assert!(
         stage.path().join("logs-world_lived.json/logger_info.json").exists(),
-        "it was lived"
+        "it was run"
     );
     stage.succeed(&["metrics", "logs-world_lived.json"]);
 }
@@ -382,7 +382,7 @@ fn logs(stage: &mut Stage) {
             "plots",
         ]);
         let page = fs::read_to_string(stage.path().join(format!("{log}.html"))).unwrap_or_default();
-        let hostile = |letter: char| is_unprintable(letter) && letter != '\n' && letter != '\t';
+        let hostile = |c: char| is_unprintable(c) && c != '\n' && c != '\t';
         assert_eq!(
             page.find(hostile)
                 .map(|at| page[at..].chars().take(60).collect::<String>()),
@@ -397,7 +397,7 @@ fn logs(stage: &mut Stage) {
         if plot.extension().is_some_and(|ending| ending == "svg") {
             let drawn = fs::read_to_string(&plot).expect("SVG is text");
             assert!(
-                !drawn.contains(|letter: char| is_unprintable(letter) && letter != '\n' && letter != '\t'),
+                !drawn.contains(|c: char| is_unprintable(c) && c != '\n' && c != '\t'),
                 "{}",
                 plot.display()
             );

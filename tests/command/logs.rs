@@ -57,7 +57,7 @@ fn scoring_and_aggregating_agree_with_validation() {
         HEADER.to_owned() + &numbers.iter().map(row).collect::<String>()
     };
     fs::remove_dir_all(log.join("w/1-test")).expect("it was written");
-    for (numbers, code, said) in [
+    for (numbers, code, message) in [
         (
             &[0, 1, 1, 2][..],
             1,
@@ -78,7 +78,7 @@ fn scoring_and_aggregating_agree_with_validation() {
             "metrics run --ste run --no-save",
         ] {
             let (_, error) = run(base.path(), code, command);
-            assert!(error.contains(said), "{command}: {error}");
+            assert!(error.contains(message), "{command}: {error}");
         }
     }
 }

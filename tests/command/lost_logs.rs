@@ -21,7 +21,7 @@ fn scenario(folder: &Path) -> String {
 }
 
 /// Runs until there are rows, damages the log, and returns the run's final message.
-fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> String {
+fn damage_log(jobs: &str, log: &Path, scenario: &str, damage: impl FnOnce(&Path)) -> String {
     let arguments = [
         "run",
         scenario,
@@ -46,7 +46,7 @@ fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> St
         );
         std::thread::yield_now();
     }
-    mishap(&table);
+    damage(&table);
     let ended = child.wait_with_output().expect("the child can be waited for");
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();
     assert_eq!(ended.status.code(), Some(1), "{error}");
@@ -63,7 +63,7 @@ fn missing_folder_is_an_error_and_is_not_recreated() {
     let scenario = scenario(folder.path());
     for jobs in ["1", "3"] {
         let log = folder.path().join(format!("deleted-{jobs}"));
-        let error = hit(jobs, &log, &scenario, |_| {
+        let error = damage_log(jobs, &log, &scenario, |_| {
             // Concurrent writes may interfere with the removal.
             while log.exists() {
                 let _ = fs::remove_dir_all(&log);
@@ -79,7 +79,7 @@ fn missing_folder_is_an_error_and_is_not_recreated() {
         assert!(!log.exists());
         let log = folder.path().join(format!("swapped-{jobs}"));
         let away = log.with_extension("away");
-        let error = hit(jobs, &log, &scenario, |_| {
+        let error = damage_log(jobs, &log, &scenario, |_| {
             fs::rename(&log, &away).expect("the folder is ours");
             fs::create_dir(&log).expect("the folder is ours");
         });
@@ -94,9 +94,9 @@ fn truncated_removed_or_replaced_file_is_an_error() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     for jobs in ["1", "3"] {
-        let check = |name: &str, mishap: &dyn Fn(&Path), expected: &str| {
+        let check = |name: &str, damage: &dyn Fn(&Path), expected: &str| {
             let log = folder.path().join(format!("{name}-{jobs}"));
-            let error = hit(jobs, &log, &scenario, mishap);
+            let error = damage_log(jobs, &log, &scenario, damage);
             assert!(
                 error.contains("data-log.tsv: found ") && error.contains(expected),
                 "{error}"
@@ -126,9 +126,9 @@ fn new_run_in_a_replaced_folder_is_undisturbed() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     let (log, small) = (folder.path().join("log"), folder.path().join("small.json"));
-    let text_of = fs::read_to_string(&scenario).expect("it was written");
-    write(&small, &text_of.replace("2000", "20"));
-    hit("2", &log, &scenario, |_| {
+    let scenario_text = fs::read_to_string(&scenario).expect("it was written");
+    write(&small, &scenario_text.replace("2000", "20"));
+    damage_log("2", &log, &scenario, |_| {
         fs::rename(&log, log.with_extension("away")).expect("the folder is ours");
         succeed(&["run", text(&small), "--agent", "random", "--output", text(&log)]);
     });
@@ -142,8 +142,8 @@ fn new_run_in_a_replaced_folder_is_undisturbed() {
 fn stopped_clock_makes_logs_byte_identical() {
     let folder = scratch();
     let scenario = scenario(folder.path()).replace("scenario.json", "small.json");
-    let text_of = fs::read_to_string(folder.path().join("scenario.json")).expect("it was written");
-    write(Path::new(&scenario), &text_of.replace("2000", "20"));
+    let scenario_text = fs::read_to_string(folder.path().join("scenario.json")).expect("it was written");
+    write(Path::new(&scenario), &scenario_text.replace("2000", "20"));
     let bytes = |name: &str, jobs: &str| {
         let log = folder.path().join(name);
         let mut run = driftworld(&format!(
@@ -165,5 +165,5 @@ fn stopped_clock_makes_logs_byte_identical() {
     assert_eq!(wrong.status.code(), Some(1));
     let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
     error.says("DRIFTWORLD_CLOCK: found \"yesterday\", expected a UTC time");
-    assert!(!folder.path().join("wrong").exists(), "nothing was begun");
+    assert!(!folder.path().join("wrong").exists(), "nothing was started");
 }

@@ -101,10 +101,10 @@ fn l2metrics_example_gives_its_files() {
         .join("results/multi_task_settings.json")
         .display()
         .to_string();
-    let mut again = vec!["metrics", "-c", &settings, "--ste"];
-    again.extend(experts.iter().map(String::as_str));
+    let mut rerun = vec!["metrics", "-c", &settings, "--ste"];
+    rerun.extend(experts.iter().map(String::as_str));
     // The list of written files follows.
-    assert!(shown.starts_with(&succeed_in(folder.path(), &again)), "{shown}");
+    assert!(shown.starts_with(&succeed_in(folder.path(), &rerun)), "{shown}");
 }
 
 #[test]
@@ -319,13 +319,13 @@ fn ignored_input_is_reported() {
     let holed = read(&table).replacen("\t1.0\n", "\tnan\n", 1);
     std::fs::write(&table, holed).expect("the folder can be written");
     let output = output(&mut driftworld_in(folder.path(), "metrics life --ste expert"));
-    let said = String::from_utf8_lossy(&output.stderr);
-    said.says("warning: life: 1 of 54 complete rows have no number in column reward");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    stderr.says("warning: life: 1 of 54 complete rows have no number in column reward");
     assert!(
-        said.contains(
+        stderr.contains(
             "the expert expert of find_green is ignored: the lifetime has no such task, only find_red, find_blue"
         ),
-        "{said}"
+        "{stderr}"
     );
 }
 

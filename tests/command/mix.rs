@@ -1,4 +1,4 @@
-//! `--mix=task`: drifts whose experiences are of one variant or the other, between two tasks.
+//! Tests of `--mix=task`: drifts between two tasks, in which each experience is of one of the two variants.
 
 use serde_json::Value;
 
@@ -45,8 +45,8 @@ fn mixture_of_two_tasks_is_designed_run_and_logged() {
 #[test]
 fn worlds_of_a_mixture_are_worlds_of_its_ends() {
     let worlds = |what: &str| {
-        let said = succeed(&format!("sample {what} --seed 4 --count 40 --jsonl"));
-        said.lines().map(str::to_owned).collect::<Vec<_>>()
+        let stdout = succeed(&format!("sample {what} --seed 4 --count 40 --jsonl"));
+        stdout.lines().map(str::to_owned).collect::<Vec<_>>()
     };
     let (a, b) = (worlds("find_objects#interact"), worlds("get_to_goal#sphere"));
     let mixed = worlds("find_objects#interact --drift-to get_to_goal#sphere --mix=task");

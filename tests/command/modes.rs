@@ -1,4 +1,4 @@
-//! Permissions of written files: new ones follow the umask, overwritten ones keep their mode.
+//! Tests of the permissions of written files: new ones follow the umask, overwritten ones keep their mode.
 #![cfg(unix)]
 
 use std::fs;
@@ -66,8 +66,8 @@ fn under(umask: &str, folder: &Path, command: &str) {
         .args(["-c", &script, env!("CARGO_BIN_EXE_driftworld")])
         .current_dir(folder);
     let ended = output(&mut shell);
-    let said = String::from_utf8_lossy(&ended.stderr);
-    assert!(ended.status.success() || may_fail(command), "{command}: {said}");
+    let stderr = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success() || may_fail(command), "{command}: {stderr}");
 }
 
 fn prepare(folder: &Path) {

@@ -1,4 +1,4 @@
-//! Scenario files of L2Explorer: run unchanged, and converted to our format.
+//! Tests that scenario files of L2Explorer run unchanged and can be converted to our format.
 
 use std::fs;
 use std::path::Path;
@@ -59,14 +59,14 @@ fn l2explorer_scenario_runs_unchanged() {
     let stand_in = folder.path().join("stand-in");
     let run = ["run", text(&original), "--agent", "random", "--output", text(&stand_in)];
     let output = output(&mut driftworld(&run));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("beside the scenario"), "{said}");
-    said.says("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("beside the scenario"), "{stderr}");
+    stderr.says("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it");
     let info = &files(&stand_in)["scenario_info.json"];
     info.says("\"../map_findobjects_1.json\": \"not there; map_findobjects_0.json stood in for it\"");
-    let again = [&run[..], &["--resume"]].concat();
-    succeed(&again);
+    let resume = [&run[..], &["--resume"]].concat();
+    succeed(&resume);
 }
 
 #[test]
@@ -86,10 +86,10 @@ fn l2explorer_scenario_is_converted() {
     let pairs = |blocks: &str, maps: &str, json: &serde_json::Value| -> Vec<[String; 3]> {
         let blocks = json[blocks].as_array().into_iter().flatten();
         let regimes = blocks.flat_map(|block| block["regimes"].as_array().into_iter().flatten());
-        let said = |regime: &serde_json::Value| {
+        let entries = |regime: &serde_json::Value| {
             [&regime["task"], &regime["count"], regime.pointer(maps).expect("a map")].map(ToString::to_string)
         };
-        regimes.map(said).collect()
+        regimes.map(entries).collect()
     };
     assert_eq!(
         pairs("blocks", "/world", &ours),

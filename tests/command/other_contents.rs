@@ -75,10 +75,10 @@ fn arguments(command: &str, document: &str) -> Vec<String> {
 #[test]
 fn document_of_the_wrong_kind_is_named() {
     let folder = everything();
-    for (number, (command, taken)) in COMMANDS.into_iter().enumerate() {
+    for (number, (command, accepted)) in COMMANDS.into_iter().enumerate() {
         for (kind, (document, name)) in KINDS.into_iter().enumerate() {
             // In the quick tier each command with every third kind.
-            if taken.contains(&document) || !is_turn(number + kind, 3) {
+            if accepted.contains(&document) || !is_turn(number + kind, 3) {
                 continue;
             }
             let arguments = arguments(command, document);
@@ -95,7 +95,7 @@ fn document_of_the_wrong_kind_is_named() {
             assert!(error.lines().count() <= 2, "{arguments:?}: {error}");
         }
     }
-    assert!(!folder.path().join("new").exists(), "no log was begun");
+    assert!(!folder.path().join("new").exists(), "no log was started");
 }
 
 #[test]
@@ -123,14 +123,14 @@ fn byte_order_mark_is_ignored() {
     let folder = everything();
     let path = folder.path();
     marked(path);
-    let said = succeed_in(
+    let stdout = succeed_in(
         path,
         &["validate", "task.json", "world.json", "scenario.json", "maps.json"],
     );
     assert_eq!(
-        said.lines().filter(|line| line.contains(": a valid ")).count(),
+        stdout.lines().filter(|line| line.contains(": a valid ")).count(),
         4,
-        "{said}"
+        "{stdout}"
     );
     for command in [
         "sample task.json#red",
@@ -159,12 +159,12 @@ fn every_file_is_judged_independently() {
     fs::write(path.join("latin.json"), b"{ \"name\": \"caf\xe9\" }").expect("the folder is ours");
     let files = ["task.json", "missing.json", "latin.json", "matrix.json", "world.json"];
     let judged = output(&mut driftworld_in(path, &[&["validate"], &files[..]].concat()));
-    let (said, error) = (
+    let (stdout, error) = (
         String::from_utf8_lossy(&judged.stdout),
         String::from_utf8_lossy(&judged.stderr),
     );
     assert_eq!(judged.status.code(), Some(1));
-    assert_eq!(said.lines().count(), 2, "{said}");
+    assert_eq!(stdout.lines().count(), 2, "{stdout}");
     error.says("missing.json: cannot be read");
     error.says("latin.json: byte 14 (line 1) is not UTF-8");
     error.says("matrix.json: found a distance matrix");

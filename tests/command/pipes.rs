@@ -1,4 +1,4 @@
-//! Devices and pipes as output: they are written directly and continuously, without a folder for temporary files.
+//! Tests of output to devices and pipes: it is written directly and continuously, without a folder for temporary files.
 #![cfg(unix)]
 
 use std::fs;
@@ -9,8 +9,8 @@ use std::process::{Command, Stdio};
 use super::terminal::{driftworld_in, output, scratch, succeed_in, text};
 
 fn make_pipe(folder: &Path, name: &str) {
-    let made = Command::new("mkfifo").arg(folder.join(name)).status();
-    assert!(made.is_ok_and(|made| made.success()));
+    let status = Command::new("mkfifo").arg(folder.join(name)).status();
+    assert!(status.is_ok_and(|status| status.success()));
 }
 
 /// More worlds than can be drawn during this test.

@@ -1,5 +1,5 @@
-//! One log has one reading: the table of `driftworld metrics`, its JSON, the page of `driftworld report`, and so Python (which
-//! reads the JSON) agree on each metric.
+//! Tests that the same log gives the same metrics everywhere: the table of `driftworld metrics`, its JSON, the page of
+//! `driftworld report`, and so Python, which reads the JSON.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Words that earlier releases accepted are refused with a replacement.
+//! Tests that words which earlier releases accepted are refused with the name of a replacement.
 
 use driftworld_text::{WordKind, removed_words};
 
@@ -14,7 +14,7 @@ fn every_removed_word_has_a_replacement() {
         fail(1, &["validate", text(&path)])
     };
     for (kind, word, instead) in removed_words() {
-        let said = match kind {
+        let errors = match kind {
             WordKind::Command | WordKind::Option => vec![refused(word)],
             WordKind::Format if word == "npy" => vec![refused("order find_objects --matrix matrix.npy")],
             WordKind::Format => vec![refused(&format!("sample find_objects#red -o worlds.{word}"))],
@@ -30,11 +30,11 @@ fn every_removed_word_has_a_replacement() {
                      "distribution": {{ "normal": {{ "mean": 0, "std": 1 }} }}, "compare": {{ "measure": "{word}" }} }} }} }}"#
             ))],
         };
-        for said in said {
-            let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        for error in errors {
+            let error = error.split_whitespace().collect::<Vec<_>>().join(" ");
             assert!(
-                said.contains(&format!("removed in 0.3; use {instead}")),
-                "{word}: {said}"
+                error.contains(&format!("removed in 0.3; use {instead}")),
+                "{word}: {error}"
             );
         }
     }

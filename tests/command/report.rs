@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::write;
-use super::terminal::{driftworld_in, fail_in, json_in, output, read, root, scratch, succeed_in};
+use super::terminal::{Says, driftworld_in, fail_in, json_in, output, read, root, scratch, succeed_in};
 
 /// Runs a lifetime and logs it in `log`: three learning blocks on two variants, each after an evaluation.
-fn live(folder: &Path) {
+fn run_lifetime(folder: &Path) {
     let regime = |variant: &str, count: u32| {
         format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "max_steps": 20 }}"#)
     };
@@ -25,21 +25,21 @@ fn live(folder: &Path) {
 #[test]
 fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
     let folder = scratch();
-    live(folder.path());
-    let said = succeed_in(folder.path(), "report log -o out/page.html --plots figures");
-    assert!(said.starts_with("wrote out/page.html (1 lifetime, "), "{said}");
-    assert!(said.contains("wrote figures (8 figures, "), "{said}");
+    run_lifetime(folder.path());
+    let stdout = succeed_in(folder.path(), "report log -o out/page.html --plots figures");
+    assert!(stdout.starts_with("wrote out/page.html (1 lifetime, "), "{stdout}");
+    assert!(stdout.contains("wrote figures (8 figures, "), "{stdout}");
     let page = read(folder.path().join("out/page.html"));
     assert!(
         page.contains("as measured by parameters from the scenario in the log"),
         "where the distances come from"
     );
-    let apart = json_in(folder.path(), "distance find_objects#blue find_objects#red --json");
-    let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
+    let distance = json_in(folder.path(), "distance find_objects#blue find_objects#red --json");
+    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("a total"));
     assert_eq!(
-        page.matches(&told).count(),
+        page.matches(&label).count(),
         4,
-        "{told} twice, on wide and on narrow paper"
+        "{label} twice, on wide and on narrow paper"
     );
     for name in ["timeline", "learning", "evaluation", "raw"] {
         let svg = read(folder.path().join(format!("figures/log_{name}.svg")));
@@ -64,15 +64,15 @@ fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
     );
     for named in ["-o again.html", "-oagain.html", "--output=again.html --plots=more"] {
         succeed_in(folder.path(), &format!("report log {named}"));
-        let again = read(folder.path().join("again.html"));
-        assert_eq!(again, page, "the same log gives the same bytes: {named}");
+        let repeated = read(folder.path().join("again.html"));
+        assert_eq!(repeated, page, "the same log gives the same bytes: {named}");
     }
 }
 
 #[test]
 fn failed_worlds_are_linked_to_a_workbench() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     succeed_in(
         folder.path(),
         "report log --studio http://127.0.0.1:8008/secret/#/play/maze",
@@ -81,14 +81,14 @@ fn failed_worlds_are_linked_to_a_workbench() {
     let start = "<a href=\"http://127.0.0.1:8008/secret/#/play/find_objects?variant=";
     assert_eq!(page.matches(start).count(), 4, "two worlds of each variant");
     assert!(page.contains("variant=red&amp;seed=0&amp;index=1\">"), "{page}");
-    let said = fail_in(folder.path(), 2, "report log --studio javascript:alert(1)");
-    assert!(said.contains("expected an address that begins with http://"), "{said}");
+    let error = fail_in(folder.path(), 2, "report log --studio javascript:alert(1)");
+    error.says("expected an address that begins with http://");
 }
 
 #[test]
 fn matrix_distances_take_precedence_and_a_mismatch_is_reported() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     write(
         &folder.path().join("far.csv"),
         ",find_objects#blue,find_objects#red\nfind_objects#blue,0,0.77\nfind_objects#red,0.77,0\n",
@@ -105,7 +105,7 @@ fn matrix_distances_take_precedence_and_a_mismatch_is_reported() {
 #[test]
 fn tasks_without_their_variants_have_no_distances() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     succeed_in(folder.path(), "report log -r agnostic");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("scored by whole tasks (variant mode agnostic), and distances are between variants"));
@@ -129,17 +129,17 @@ fn drift_is_measured_at_both_ends() {
     succeed_in(folder.path(), "run scenario.json --agent random --output log");
     succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
-    let apart = json_in(folder.path(), "distance find_objects#red find_objects#blue --json");
-    let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
+    let distance = json_in(folder.path(), "distance find_objects#red find_objects#blue --json");
+    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("a total"));
     assert_eq!(
         page.matches("0.00\n</text>").count(),
         2,
         "the drift begins at the variant of the block before"
     );
     assert_eq!(
-        page.matches(&told).count(),
+        page.matches(&label).count(),
         2,
-        "the block after the drift is {told} from the end of the drift"
+        "the block after the drift is {label} from the end of the drift"
     );
     assert!(page.contains("The beginning of a drifting block"));
 }
@@ -147,13 +147,13 @@ fn drift_is_measured_at_both_ends() {
 #[test]
 fn several_lifetimes_have_intervals_and_steps_on_request() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     succeed_in(folder.path(), "run scenario.json --agent random --output more/second");
-    let said = succeed_in(
+    let stdout = succeed_in(
         folder.path(),
         "report log more -u steps --against more --title All -T lb timeline",
     );
-    assert!(said.starts_with("wrote report.html (2 lifetimes, "), "{said}");
+    assert!(stdout.starts_with("wrote report.html (2 lifetimes, "), "{stdout}");
     let page = read(folder.path().join("report.html"));
     for part in [
         "<h1>All</h1>",
@@ -172,11 +172,11 @@ fn several_lifetimes_have_intervals_and_steps_on_request() {
 #[test]
 fn worlds_of_a_task_that_changed_since_the_run_are_not_pictured() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     let info = folder.path().join("log/scenario_info.json");
-    let mut said: serde_json::Value = serde_json::from_str(&read(&info)).expect("it is JSON");
-    said["made_from"]["find_objects#red"]["variant"] = "0".repeat(64).into();
-    write(&info, &said.to_string());
+    let mut json: serde_json::Value = serde_json::from_str(&read(&info)).expect("it is JSON");
+    json["made_from"]["find_objects#red"]["variant"] = "0".repeat(64).into();
+    write(&info, &json.to_string());
     succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("No pictures of worlds: find_objects#red is not what it was when this was run."));
@@ -198,7 +198,7 @@ fn scenario_without_learning_gets_its_own_reason_for_missing_pictures() {
 #[test]
 fn log_warnings_are_printed_and_on_the_page() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it is there");
     let done = output(&mut driftworld_in(folder.path(), "report log"));
     assert!(String::from_utf8_lossy(&done.stderr).contains("warning: log: "));
@@ -209,7 +209,7 @@ fn log_warnings_are_printed_and_on_the_page() {
 #[test]
 fn unreadable_logs_are_named_and_the_page_can_go_to_standard_output() {
     let folder = scratch();
-    live(folder.path());
+    run_lifetime(folder.path());
     for name in ["bad", "worse"] {
         write(&folder.path().join(name).join("logger_info.json"), "{");
         write(&folder.path().join(name).join("w/0-train/data-log.tsv"), "");
@@ -255,8 +255,8 @@ fn files_named_in_a_log_are_not_opened() {
     succeed_in(path, "report log --task tasks/mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     let info = path.join("log/scenario_info.json");
-    let made = std::process::Command::new("mkfifo").arg(path.join("pipe")).status();
-    assert!(made.expect("every unix has mkfifo").success());
+    let status = std::process::Command::new("mkfifo").arg(path.join("pipe")).status();
+    assert!(status.expect("every unix has mkfifo").success());
     for named in ["/dev/zero", "pipe", "../../etc/passwd"] {
         let text = read(&info).replace("mine.json", named);
         write(&path.join("other/scenario_info.json"), &text);

@@ -48,7 +48,7 @@ fn num_whole_rows(log: &Path) -> usize {
 
 /// Sends a signal to a run as soon as there is a row; returns its final message. `None` if it finished before.
 #[cfg(unix)]
-fn told_to_stop(arguments: &[&str], log: &Path, signal: &str) -> Option<String> {
+fn stop_with_signal(arguments: &[&str], log: &Path, signal: &str) -> Option<String> {
     let mut child = start(arguments);
     // Interrupted experiences leave no row: waits for a whole one.
     while num_whole_rows(log) == 0 && child.try_wait().expect("the child can be asked").is_none() {
@@ -74,12 +74,12 @@ fn stopped_run_finishes_its_row_and_says_how_to_continue() {
     let scenario = longer_scenario(folder.path(), 1000);
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random", "--jobs", "1", "--json"];
-    let said = succeed(&[&all[..], &["--output", text(&whole)]].concat());
+    let stdout = succeed(&[&all[..], &["--output", text(&whole)]].concat());
     for signal in ["-INT", "-TERM"] {
         let log = folder.path().join(signal);
         let arguments = [&all[..], &["--output", text(&log)]].concat();
         // The run may finish before the signal arrives: then it is repeated.
-        let error = (0..10).find_map(|_| told_to_stop(&arguments, &log, signal));
+        let error = (0..10).find_map(|_| stop_with_signal(&arguments, &log, signal));
         let error = error.expect("a signal reaches a run under way");
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
         let rows = num_rows(&log);
@@ -89,7 +89,7 @@ fn stopped_run_finishes_its_row_and_says_how_to_continue() {
         );
         // Also if nothing is left to do.
         for _ in 0..2 {
-            assert_eq!(succeed(&[&arguments[..], &["--resume"]].concat()), said, "{signal}");
+            assert_eq!(succeed(&[&arguments[..], &["--resume"]].concat()), stdout, "{signal}");
             assert_eq!(files(&log), files(&whole), "{signal}");
         }
     }
@@ -206,8 +206,8 @@ fn task_beside_the_scenario_is_found_from_any_folder() {
         &scenario,
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
-    let said = succeed(&["run", text(&scenario), "--output", text(&folder.path().join("log"))]);
-    assert!(said.contains("lamps#default"), "{said}");
+    let stdout = succeed(&["run", text(&scenario), "--output", text(&folder.path().join("log"))]);
+    assert!(stdout.contains("lamps#default"), "{stdout}");
 }
 
 #[test]
@@ -220,13 +220,13 @@ fn converting_a_scenario_away_from_its_worlds_causes_a_warning() {
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
     write(&folder.path().join("yard.json"), "{}");
-    let said = |to: &str| {
+    let warns = |to: &str| {
         let to = folder.path().join(to);
         let output = output(&mut driftworld(&["convert", text(&scenario), "-o", text(&to)]));
         String::from_utf8_lossy(&output.stderr).contains("names the world file \"yard.json\", which is missing")
     };
-    assert!(said("elsewhere/scenario.json"));
-    assert!(!said("again.json"));
+    assert!(warns("elsewhere/scenario.json"));
+    assert!(!warns("again.json"));
 }
 
 #[test]
@@ -242,5 +242,5 @@ fn every_missing_variant_is_named() {
     let log = folder.path().join("log");
     let error = fail(1, &["run", text(&scenario), "--output", text(&log)]);
     assert!(error.contains("rde") && error.contains("bleu"), "{error}");
-    assert!(!log.exists(), "nothing was begun");
+    assert!(!log.exists(), "nothing was started");
 }

@@ -1,4 +1,4 @@
-//! The files that a run leaves, and the parts that repeat when it is run again.
+//! Reads the files of a log without timestamps, so that logs of equal runs are equal.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -29,13 +29,13 @@ pub(crate) fn files(log: &Path) -> BTreeMap<String, String> {
 
 pub(crate) fn timeless(table: &str) -> String {
     let header: Vec<&str> = table.lines().next().unwrap_or_default().split('\t').collect();
-    let place = header
+    let column = header
         .iter()
         .position(|name| *name == "timestamp")
         .expect("rows say when");
     let row = |line: &str| {
         let mut cells: Vec<&str> = line.split('\t').collect();
-        cells.remove(place);
+        cells.remove(column);
         cells.join("\t") + "\n"
     };
     table.lines().map(row).collect()

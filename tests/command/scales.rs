@@ -172,17 +172,17 @@ fn scales_that_fit_no_task_are_reported() {
         assert!(run.status.success());
         String::from_utf8(run.stderr).expect("text")
     };
-    let said = warned(r#"{"scales": {"findobject_red": {"floor": 0, "ceiling": 10}}}"#);
+    let stderr = warned(r#"{"scales": {"findobject_red": {"floor": 0, "ceiling": 10}}}"#);
     assert!(
-        said.contains(
+        stderr.contains(
             "found no floor and ceiling of a task of this log, expected findobjects_red, findobjects_penalty"
-        ) && said.contains("did you mean \"findobject_red\"?"),
-        "{said}"
+        ) && stderr.contains("did you mean \"findobject_red\"?"),
+        "{stderr}"
     );
-    let said = warned(
+    let stderr = warned(
         r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}, "findobjects_penalt": {"floor": 0, "ceiling": 1}}}"#,
     );
-    said.says("of findobjects_penalty; did you mean \"findobjects_penalt\"?");
-    let said = warned(r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}}}"#);
-    assert!(!said.contains("scales:"), "{said}");
+    stderr.says("of findobjects_penalty; did you mean \"findobjects_penalt\"?");
+    let stderr = warned(r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}}}"#);
+    assert!(!stderr.contains("scales:"), "{stderr}");
 }

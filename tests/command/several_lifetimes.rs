@@ -1,4 +1,4 @@
-//! `driftworld metrics` for several lifetimes: null bands, results of tasks, notes on two agents, constant metrics.
+//! Tests `driftworld metrics` with several lifetimes: null bands, results of tasks, notes on two agents, constant metrics.
 
 use std::path::Path;
 

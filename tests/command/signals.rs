@@ -15,8 +15,8 @@ fn start(folder: &Path, arguments: &[&str]) -> Child {
 }
 
 /// Waits until a condition holds for a running command.
-fn wait_until(child: &mut Child, is_so: impl Fn(&Child) -> bool) {
-    while !is_so(child) {
+fn wait_until(child: &mut Child, condition: impl Fn(&Child) -> bool) {
+    while !condition(child) {
         let ended = child.try_wait().expect("it can be asked");
         assert!(ended.is_none(), "it is over before: {ended:?}");
         std::thread::yield_now();
@@ -25,7 +25,7 @@ fn wait_until(child: &mut Child, is_so: impl Fn(&Child) -> bool) {
 
 /// Whether the command handles signals yet, according to the system.
 #[cfg(target_os = "linux")]
-fn looks_for_signals(child: &Child) -> bool {
+fn handles_signals(child: &Child) -> bool {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
     let caught = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
@@ -42,14 +42,14 @@ fn ended(child: Child) -> (Output, String) {
 #[test]
 fn command_waiting_for_a_reader_ends_by_the_signal() {
     let folder = scratch();
-    let made = Command::new("mkfifo").arg(folder.path().join("pipe")).status();
-    assert!(made.is_ok_and(|made| made.success()));
+    let status = Command::new("mkfifo").arg(folder.path().join("pipe")).status();
+    assert!(status.is_ok_and(|status| status.success()));
     for (name, number) in signals() {
         let mut child = start(
             folder.path(),
             &["sample", "find_objects", "--count", "3", "--jsonl", "-o", "pipe"],
         );
-        wait_until(&mut child, looks_for_signals);
+        wait_until(&mut child, handles_signals);
         signal(&child, name);
         let (output, error) = ended(child);
         assert_eq!(output.status.signal(), Some(number), "{error}");
@@ -94,7 +94,7 @@ fn long_experience_does_not_delay_the_end() {
         let (output, error) = ended(child);
         assert_eq!(output.status.code(), Some(128 + number), "{error}");
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
-        let mut rows = fs::read_dir(path.join(&log)).expect("the log was begun");
+        let mut rows = fs::read_dir(path.join(&log)).expect("the log was started");
         assert!(
             !rows.any(|entry| entry.is_ok_and(|entry| entry.path().is_dir())),
             "an experience that was cut off left a row"
@@ -116,7 +116,7 @@ fn hang_up_is_ignored_under_nohup() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the system has nohup");
-    wait_until(&mut child, looks_for_signals);
+    wait_until(&mut child, handles_signals);
     signal(&child, "-HUP");
     let (output, _) = ended(child);
     assert!(output.status.success());

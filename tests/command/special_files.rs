@@ -16,7 +16,7 @@ use crate::is_turn;
 /// Placeholder for the special file in a command line.
 const FILE: &str = "SPECIAL";
 
-/// Every place in a command line that names a file or folder to read.
+/// Command lines that have the special file in place of each file or folder that can be read.
 fn command_lines() -> Vec<Vec<&'static str>> {
     let lines = [
         "tasks show SPECIAL",
@@ -100,10 +100,10 @@ const WITHOUT_FILES: [&str; 6] = ["demo", "bench", "doctor", "new", "export", "c
 
 #[test]
 fn every_subcommand_that_reads_files_is_tested() {
-    let asked = command_lines();
+    let lines = command_lines();
     for command in subcommands() {
-        let is_asked = asked.iter().any(|line| line[0] == command);
-        assert_eq!(is_asked, !WITHOUT_FILES.contains(&command.as_str()), "{command}");
+        let is_tested = lines.iter().any(|line| line[0] == command);
+        assert_eq!(is_tested, !WITHOUT_FILES.contains(&command.as_str()), "{command}");
     }
 }
 
@@ -117,8 +117,8 @@ fn endless_device_is_not_read() {
 #[test]
 fn pipe_without_a_writer_is_not_waited_for() {
     everywhere(1, "a named pipe", |path| {
-        let made = Command::new("mkfifo").arg(path).status();
-        assert!(made.expect("every unix has mkfifo").success());
+        let status = Command::new("mkfifo").arg(path).status();
+        assert!(status.expect("every unix has mkfifo").success());
     });
 }
 
@@ -166,7 +166,7 @@ fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     }
 }
 
-/// The valid files beside the special ones.
+/// Writes the valid files that the command lines name besides the special ones.
 fn prepare(folder: &Path) {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
@@ -211,7 +211,7 @@ fn read_task() -> String {
 
 /// The exit code and the standard error of a command line. More than ten seconds or four gigabytes fail the test.
 fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
-    let said = folder.join("said.txt");
+    let messages = folder.join("said.txt");
     let mut child = Command::new("sh")
         .args([
             "-c",
@@ -222,21 +222,21 @@ fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(File::create(&said).expect("the folder is ours"))
+        .stderr(File::create(&messages).expect("the folder is ours"))
         .spawn()
         .expect("every unix has sh");
-    let begun = Instant::now();
+    let start = Instant::now();
     let status = loop {
         if let Some(status) = child.try_wait().expect("the process is ours") {
             break status;
         }
-        if begun.elapsed() > Duration::from_secs(10) {
+        if start.elapsed() > Duration::from_secs(10) {
             child.kill().expect("the process is ours");
             panic!("{line:?} did not end");
         }
         std::thread::sleep(Duration::from_millis(5));
     };
-    (status.code(), super::terminal::read(said))
+    (status.code(), super::terminal::read(messages))
 }
 
 #[test]
@@ -250,8 +250,8 @@ fn unrecognised_file_does_not_suppress_other_verdicts() {
     symlink("nowhere", all.join("b.json")).expect("a link can be made");
     fs::write(all.join("c.json"), b"{\"name\": \"\xff\"}").expect("the folder is ours");
     fs::create_dir(all.join("e.json")).expect("the folder is ours");
-    let made = Command::new("mkfifo").arg(all.join("f.json")).status();
-    assert!(made.expect("every unix has mkfifo").success());
+    let status = Command::new("mkfifo").arg(all.join("f.json")).status();
+    assert!(status.expect("every unix has mkfifo").success());
     let (code, _) = ended(folder, &["validate", "all"]);
     assert_eq!(code, Some(1));
     let judged = output(&mut super::terminal::driftworld(&["validate", "--json", text(&all)]));
@@ -265,7 +265,7 @@ fn unrecognised_file_does_not_suppress_other_verdicts() {
         .collect();
     let valid: Vec<bool> = verdicts.iter().map(|(valid, _)| *valid).collect();
     assert_eq!(valid, [false, false, false, true, false, false]);
-    for ((_, said), found) in verdicts.iter().zip([
+    for ((_, message), found) in verdicts.iter().zip([
         "a device",
         "a link that leads nowhere",
         "byte 10 (line 1)",
@@ -273,6 +273,6 @@ fn unrecognised_file_does_not_suppress_other_verdicts() {
         "a folder",
         "a named pipe",
     ]) {
-        assert!(said.contains(found), "{said}");
+        assert!(message.contains(found), "{message}");
     }
 }

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 
 use super::terminal::{driftworld_in, output, scratch};
 
-/// A folder that looks like a page, and beside it a file that nobody should see.
+/// Creates a folder that looks like a page, and beside it a file that must not be served.
 fn page(root: &Path) -> std::path::PathBuf {
     let folder = root.join("page");
     std::fs::create_dir_all(folder.join("networks")).expect("the folder is ours");
@@ -37,7 +37,7 @@ impl Drop for Serving {
     }
 }
 
-/// A server, and the address that it printed.
+/// Starts a server and returns it with the address that it printed.
 fn served(folder: &Path, arguments: &[&str]) -> (Serving, String) {
     let mut command = studio(folder, arguments);
     let mut child = command
@@ -128,18 +128,18 @@ fn page_is_written_into_a_folder() {
 #[test]
 fn error_for_a_missing_page_or_task_says_what_to_do() {
     let folder = scratch();
-    let said = |arguments: &[&str]| {
+    let error = |arguments: &[&str]| {
         let done = output(studio(folder.path(), arguments).arg("--no-open"));
         assert_eq!(done.status.code(), Some(1), "{done:?}");
         String::from_utf8_lossy(&done.stderr).into_owned()
     };
-    assert!(said(&[]).contains("cannot be read"), "{}", said(&[]));
+    assert!(error(&[]).contains("cannot be read"), "{}", error(&[]));
     std::fs::create_dir(folder.path().join("page")).expect("the folder is ours");
-    assert!(said(&[]).contains("cargo xtask studio"), "{}", said(&[]));
+    assert!(error(&[]).contains("cargo xtask studio"), "{}", error(&[]));
     page(folder.path());
     assert!(
-        said(&["no_such_task"]).contains("found task"),
+        error(&["no_such_task"]).contains("found task"),
         "{}",
-        said(&["no_such_task"])
+        error(&["no_such_task"])
     );
 }

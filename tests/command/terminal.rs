@@ -46,7 +46,7 @@ impl Arguments for Vec<&str> {
     }
 }
 
-/// Checks of what a command said, which show all of it if they fail.
+/// Checks that a command's output contains a text; shows the whole output if not.
 pub(crate) trait Says {
     fn says(&self, part: &str);
 }
@@ -74,18 +74,18 @@ pub(crate) fn driftworld_in(folder: &Path, arguments: &(impl Arguments + ?Sized)
     command
 }
 
-/// Runs it to its end.
+/// Runs the command to its end.
 pub(crate) fn output(command: &mut Command) -> Output {
     command.output().expect("the command was built by cargo and starts")
 }
 
-/// Its standard output; it must succeed.
+/// Runs the command, which must succeed, and returns its standard output.
 #[track_caller]
 pub(crate) fn succeed(arguments: &(impl Arguments + ?Sized)) -> String {
     succeed_in(root(), arguments)
 }
 
-/// Its standard output when run in this folder; it must succeed.
+/// Runs the command in this folder, like [`succeed`].
 #[track_caller]
 pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
@@ -94,13 +94,13 @@ pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -
     String::from_utf8(output.stdout).expect("the command prints UTF-8")
 }
 
-/// The JSON that it prints; it must succeed.
+/// Runs the command, which must succeed, and returns the JSON that it prints.
 #[track_caller]
 pub(crate) fn json(arguments: &(impl Arguments + ?Sized)) -> Value {
     json_in(root(), arguments)
 }
 
-/// The JSON that it prints when run in this folder; it must succeed.
+/// Runs the command in this folder, like [`json`].
 #[track_caller]
 pub(crate) fn json_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Value {
     serde_json::from_str(&succeed_in(folder, arguments)).expect("--json prints JSON")
@@ -114,7 +114,7 @@ pub(crate) fn subcommands() -> Vec<String> {
     names.filter(|name| *name != "help").map(str::to_owned).collect()
 }
 
-/// Its standard error; it must end with this exit code.
+/// Runs the command, which must end with this exit code, and returns its standard error.
 #[track_caller]
 pub(crate) fn fail(code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     fail_in(root(), code, arguments)

@@ -1,5 +1,5 @@
 //! `driftworld transfer-report` distinguishes a learner whose transfer falls with distance from one whose transfer does not.
-//! The learners are simple formulas; their logs are read like any other.
+//! The learners are simple formulas that write ordinary logs.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ fn by_distance(a: usize, b: usize) -> f64 {
 }
 
 /// A value between a tenth and a half, independent of the distance.
-fn by_nothing(a: usize, b: usize) -> f64 {
+fn independent(a: usize, b: usize) -> f64 {
     if a == b {
         1.0
     } else {
@@ -85,7 +85,7 @@ impl Life {
 }
 
 /// Learns the variants in this order, with evaluations before and after each unless disabled.
-fn live(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
+fn simulate(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
     let info = LoggerInfo::new(["reward"]).expect("a column");
     let log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
     let mut life = Life {
@@ -106,10 +106,10 @@ fn live(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
 }
 
 /// A folder with `logs/` of these lifetimes and `distances.csv`.
-fn lived(orders: &[&[usize]], kernel: Kernel, evaluations: bool) -> tempfile::TempDir {
+fn simulated(orders: &[&[usize]], kernel: Kernel, evaluations: bool) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     for (k, order) in orders.iter().enumerate() {
-        live(&folder.path().join(format!("logs/run{k}")), order, kernel, evaluations);
+        simulate(&folder.path().join(format!("logs/run{k}")), order, kernel, evaluations);
     }
     let labels = (0..6).map(|k| format!("line#v{k}")).collect();
     write_matrix(folder.path(), labels);
@@ -144,7 +144,7 @@ fn every_order() -> Vec<&'static [usize]> {
 
 #[test]
 fn distance_dependent_transfer_is_distinguished() {
-    let near = json(lived(&every_order(), by_distance, true).path());
+    let near = json(simulated(&every_order(), by_distance, true).path());
     let test = &near["forward"]["spearman"];
     assert_eq!(
         (&test["pairs"], &test["items"], &test["exact"]),
@@ -154,16 +154,16 @@ fn distance_dependent_transfer_is_distinguished() {
     assert!(test["p_less"].as_f64() < Some(0.01), "{test}");
     assert_eq!((&near["lifetimes"], &near["learning_orders"]), (&6.into(), &6.into()));
 
-    let blind = json(lived(&every_order(), by_nothing, true).path());
-    let test = &blind["forward"]["spearman"];
+    let unrelated = json(simulated(&every_order(), independent, true).path());
+    let test = &unrelated["forward"]["spearman"];
     assert!(test["correlation"].as_f64().map(f64::abs) < Some(0.35), "{test}");
     assert!(test["p_two_sided"].as_f64() > Some(0.1), "{test}");
 }
 
 #[test]
 fn report_explains_itself_and_draws_a_picture() {
-    let folder = lived(&every_order(), by_distance, true);
-    let said = reported(folder.path(), &["--plot", "transfer.png"]);
+    let folder = simulated(&every_order(), by_distance, true);
+    let stdout = reported(folder.path(), &["--plot", "transfer.png"]);
     for words in [
         "6 lifetimes",
         "line#v0",
@@ -171,9 +171,9 @@ fn report_explains_itself_and_draws_a_picture() {
         "not the probability that similarity does not matter",
         "Correlation is not causation",
     ] {
-        assert!(said.contains(words), "{words}: {said}");
+        assert!(stdout.contains(words), "{words}: {stdout}");
     }
-    assert!(!said.contains("the same order"), "{said}");
+    assert!(!stdout.contains("the same order"), "{stdout}");
     let picture = std::fs::read(folder.path().join("transfer.png")).expect("it was written");
     assert!(picture.starts_with(b"\x89PNG"));
     if let Some(keep) = std::env::var_os("DRIFTWORLD_KEEP_PICTURES") {
@@ -183,18 +183,18 @@ fn report_explains_itself_and_draws_a_picture() {
         )
         .expect("a folder");
     }
-    let one = lived(&[&ORDERS[0]], by_distance, true);
+    let one = simulated(&[&ORDERS[0]], by_distance, true);
     assert!(reported(one.path(), &[]).contains("learned in the same order"));
 }
 
 #[test]
 fn impossible_reports_say_what_is_needed() {
-    let folder = lived(&[&ORDERS[0]], by_distance, false);
+    let folder = simulated(&[&ORDERS[0]], by_distance, false);
     let error = refused(folder.path(), 1, &[]);
     error.says("no evaluation in 1 logs");
     error.says("--evaluate every");
 
-    let folder = lived(&[&ORDERS[0][..2]], by_distance, true);
+    let folder = simulated(&[&ORDERS[0][..2]], by_distance, true);
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
     let error = refused(folder.path(), 1, &[]);
     error.says("1 forward and 1 backward");

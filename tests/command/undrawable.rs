@@ -33,14 +33,14 @@ fn validate_draws_worlds_of_every_variant_and_reports_failures() {
     let folder = scratch();
     let task = quarry(folder.path());
     succeed(&["validate", text(&task)]);
-    let told = output(&mut driftworld_in(
+    let done = output(&mut driftworld_in(
         folder.path(),
         "validate quarry.json --worlds 30 --json",
     ));
-    assert_eq!(told.status.code(), Some(1));
-    let told: Value = serde_json::from_slice(&told.stdout).expect("it is JSON");
-    assert_eq!(told[0]["valid"], false);
-    let trials = told[0]["worlds"].as_array().expect("there is a list");
+    assert_eq!(done.status.code(), Some(1));
+    let verdicts: Value = serde_json::from_slice(&done.stdout).expect("it is JSON");
+    assert_eq!(verdicts[0]["valid"], false);
+    let trials = verdicts[0]["worlds"].as_array().expect("there is a list");
     assert_eq!(trials.len(), 4);
     for trial in trials {
         let failed = trial["placement"].as_u64().expect("it is a count");
@@ -79,16 +79,16 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     let error = fail_in(folder.path(), 1, run);
     error.says("experience 27, quarry#low..high at 0.425 of its way");
     assert!(error.contains("--resume and --skip-undrawable"), "{error}");
-    let again = fail_in(folder.path(), 1, &format!("{run} --resume"));
-    assert!(again.contains("--skip-undrawable"), "{again}");
-    let told = json_in(folder.path(), &format!("{run} --resume --skip-undrawable --json"));
+    let error = fail_in(folder.path(), 1, &format!("{run} --resume"));
+    assert!(error.contains("--skip-undrawable"), "{error}");
+    let summary = json_in(folder.path(), &format!("{run} --resume --skip-undrawable --json"));
     // Progress 0.425 to 0.575 in steps of a fortieth.
     assert_eq!(
-        (told["skipped"].as_u64(), told["experiences"].as_u64()),
+        (summary["skipped"].as_u64(), summary["experiences"].as_u64()),
         (Some(7), Some(54)),
-        "{told}"
+        "{summary}"
     );
-    assert_eq!(told["left_out"][0]["experience"], 27);
+    assert_eq!(summary["left_out"][0]["experience"], 27);
     let shown = succeed_in(folder.path(), &format!("{run} --resume"));
     assert!(shown.contains("left out: 7 experiences"), "{shown}");
     let checked = succeed_in(folder.path(), "logs validate log");
@@ -104,9 +104,9 @@ fn undrawable_first_world_starts_no_log_unless_skipped() {
     succeed_in(folder.path(), design);
     let run = "run s.json --agent random --output log --skip-undrawable --json";
     let summary = json_in(folder.path(), run);
-    let (lived, skipped) = (summary["experiences"].as_u64(), summary["skipped"].as_u64());
-    assert_eq!(lived.unwrap_or_default() + skipped.unwrap_or_default(), 22);
-    assert!(lived > Some(0) && skipped > Some(0), "{summary}");
+    let (num_run, skipped) = (summary["experiences"].as_u64(), summary["skipped"].as_u64());
+    assert_eq!(num_run.unwrap_or_default() + skipped.unwrap_or_default(), 22);
+    assert!(num_run > Some(0) && skipped > Some(0), "{summary}");
 }
 
 #[test]
@@ -187,9 +187,9 @@ fn unknown_model_is_refused_by_every_command_that_trains() {
             commands.push("validate w.json");
         }
         for command in commands {
-            let said = output(&mut driftworld_in(here, command));
-            let error = String::from_utf8_lossy(&said.stderr).into_owned();
-            assert_eq!(said.status.success(), expected.is_empty(), "{command}: {error}");
+            let done = output(&mut driftworld_in(here, command));
+            let error = String::from_utf8_lossy(&done.stderr).into_owned();
+            assert_eq!(done.status.success(), expected.is_empty(), "{command}: {error}");
             assert!(expected.iter().all(|part| error.contains(part)), "{command}: {error}");
         }
     };
@@ -218,10 +218,10 @@ fn unknown_model_is_refused_by_every_command_that_trains() {
     // L2Explorer draws objects of unknown classes and models anyway.
     let original = r#"{ "objects": [{ "class": "Tree", "model": "77", "coordinates": ["3", 4] }] }"#;
     write(&here.join("o.json"), original);
-    let said = output(&mut driftworld_in(here, "validate --l2explorer o.json"));
-    let warned = String::from_utf8_lossy(&said.stderr).into_owned();
+    let done = output(&mut driftworld_in(here, "validate --l2explorer o.json"));
+    let warned = String::from_utf8_lossy(&done.stderr).into_owned();
     assert!(
-        said.status.success() && warned.contains("model \"77\" of class \"tree\"; a placeholder stands there"),
+        done.status.success() && warned.contains("model \"77\" of class \"tree\"; a placeholder stands there"),
         "{warned}"
     );
 }
@@ -288,15 +288,15 @@ fn planner_tries_the_worlds_of_validate_and_reports_failures() {
     };
     task("ways", r#"{ "polygon": [[-9, 4], [9, 4], [9, 5], [-9, 5]] }"#);
     task("closed", r#"{ "polygon": [[-15, 4], [15, 4], [15, 5], [-15, 5]] }"#);
-    let try_of = |name: &str| {
-        let told = json_in(folder.path(), &format!("validate {name} --worlds 3 --json"));
+    let trial_of = |name: &str| {
+        let verdicts = json_in(folder.path(), &format!("validate {name} --worlds 3 --json"));
         (
-            told[0]["worlds"][0]["expert"]["succeeded"].as_u64(),
-            told[0]["warnings"].to_string(),
+            verdicts[0]["worlds"][0]["expert"]["succeeded"].as_u64(),
+            verdicts[0]["warnings"].to_string(),
         )
     };
-    assert_eq!(try_of("ways.json"), (Some(3), "[]".to_owned()));
-    let (succeeded, warnings) = try_of("closed.json");
+    assert_eq!(trial_of("ways.json"), (Some(3), "[]".to_owned()));
+    let (succeeded, warnings) = trial_of("closed.json");
     assert_eq!(succeeded, Some(0));
     assert!(warnings.contains("0 of 3 worlds, not in 0, 1, 2"), "{warnings}");
 }

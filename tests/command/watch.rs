@@ -1,4 +1,4 @@
-//! Watching episodes: `run --record`, `replay`, `film`.
+//! Tests of recorded episodes, replays and films: `run --record`, `replay`, `film`.
 
 use std::fs;
 use std::path::Path;
@@ -61,10 +61,10 @@ fn recorded_run_is_unchanged_and_each_episode_can_be_replayed() {
         let mut found = files(&kept);
         found.retain(|name, _| !name.ends_with("actions.jsonl"));
         assert_eq!(found, files(&plain), "{agent}: recording changes no row");
-        let said = succeed(&["replay", text(&kept)]);
+        let stdout = succeed(&["replay", text(&kept)]);
         assert!(
-            said.contains("14 episodes of") && said.ends_with("come out as recorded\n"),
-            "{said}"
+            stdout.contains("14 episodes of") && stdout.ends_with("come out as recorded\n"),
+            "{stdout}"
         );
         fs::remove_dir_all(&plain).unwrap();
         fs::remove_dir_all(&kept).unwrap();
@@ -119,11 +119,11 @@ fn log_without_recordings_gets_them_from_then_on() {
     let none = fail(1, &["replay", text(&log)]);
     assert!(none.contains("run with --record"), "{none}");
     succeed(&[&all[..], &["--resume", "--record"]].concat());
-    let said = succeed(&["replay", text(&log)]);
-    said.says("9 episodes of");
-    said.says("; 5 were not recorded");
-    let said = fail(1, &["replay", text(&log), "--episode", "4"]);
-    assert!(said.contains("no recording of episode 4"), "{said}");
+    let stdout = succeed(&["replay", text(&log)]);
+    stdout.says("9 episodes of");
+    stdout.says("; 5 were not recorded");
+    let error = fail(1, &["replay", text(&log), "--episode", "4"]);
+    assert!(error.contains("no recording of episode 4"), "{error}");
 }
 
 #[test]
@@ -141,14 +141,14 @@ fn damaged_recording_is_located_and_others_are_readable() {
     // The line of the first episode: after the header and its world.
     let damaged = whole.replacen("\"experience\":0", "\"experience\":7", 1);
     fs::write(&path, damaged).unwrap();
-    let said = fail(1, &["replay", text(&log), "--episode", "0"]);
-    assert!(said.contains("actions.jsonl: line 3: found the checksum"), "{said}");
+    let error = fail(1, &["replay", text(&log), "--episode", "0"]);
+    assert!(error.contains("actions.jsonl: line 3: found the checksum"), "{error}");
     succeed(&["replay", text(&log), "--episode", "1"]);
-    let said = fail(1, &["replay", text(&log)]);
-    assert!(said.contains("13 episodes come out as recorded, 1 do not"), "{said}");
+    let error = fail(1, &["replay", text(&log)]);
+    assert!(error.contains("13 episodes come out as recorded, 1 do not"), "{error}");
     fs::write(&path, &whole[..whole.len() - 20]).unwrap();
-    let said = fail(1, &["replay", text(&log), "--episode", "4"]);
-    assert!(said.contains("found the end of the file"), "{said}");
+    let error = fail(1, &["replay", text(&log), "--episode", "4"]);
+    assert!(error.contains("found the end of the file"), "{error}");
     succeed(&["replay", text(&log), "--episode", "3"]);
     // Rows that contradict the recording.
     fs::write(&path, &whole).unwrap();
@@ -174,8 +174,8 @@ fn damaged_recording_is_located_and_others_are_readable() {
         })
         .collect();
     fs::write(&table, changed.join("\n") + "\n").unwrap();
-    let said = fail(1, &["replay", text(&log), "--episode", "0"]);
-    said.says("experience 0, steps: found 30 in its recording, expected 29");
+    let error = fail(1, &["replay", text(&log), "--episode", "0"]);
+    error.says("experience 0, steps: found 30 in its recording, expected 29");
 }
 
 #[test]
@@ -189,34 +189,34 @@ fn episode_becomes_a_film_or_a_sheet() {
         let line = format!("replay log --episode 1 -o {name} {more}");
         succeed_in(folder.path(), &line)
     };
-    let said = replay("e.gif", "--size 48");
-    said.says("episode 1: find_objects#red, world 1 under seed 5: 30 steps");
-    assert!(said.contains(": 31 frames of 96 × 48 pixels, 4.0 s"), "{said}");
-    let said = replay("wide.gif", "--size 50 --every 30");
-    assert!(said.contains(": 2 frames of 100 × 83 pixels"), "{said}");
+    let stdout = replay("e.gif", "--size 48");
+    stdout.says("episode 1: find_objects#red, world 1 under seed 5: 30 steps");
+    assert!(stdout.contains(": 31 frames of 96 × 48 pixels, 4.0 s"), "{stdout}");
+    let stdout = replay("wide.gif", "--size 50 --every 30");
+    assert!(stdout.contains(": 2 frames of 100 × 83 pixels"), "{stdout}");
     assert_eq!(first_bytes("e.gif"), b"GIF8");
-    let said = replay(
+    let stdout = replay(
         "e.apng",
         "--size 48 --view agent --no-captions --every 7 --fps 4 --modality depth",
     );
-    assert!(said.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{said}");
+    assert!(stdout.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{stdout}");
     assert_eq!(&first_bytes("e.apng")[1..], b"PNG");
-    let said = replay("e.png", "--size 48 --json");
-    said.says("\"frames\": 12");
-    said.says("\"width\": 96");
-    let said = replay("e.png", "--size 48 --view above");
-    assert!(said.contains(": 12 frames of 48 × 48 pixels, on a sheet of "), "{said}");
+    let stdout = replay("e.png", "--size 48 --json");
+    stdout.says("\"frames\": 12");
+    stdout.says("\"width\": 96");
+    let stdout = replay("e.png", "--size 48 --view above");
+    stdout.says(": 12 frames of 48 × 48 pixels, on a sheet of ");
     assert_eq!(&first_bytes("e.png")[1..], b"PNG");
     // Drawing again gives the same bytes.
     let before = fs::read(at("e.gif")).unwrap();
     replay("e.gif", "--size 48");
     assert!(fs::read(at("e.gif")).unwrap() == before);
-    let said = fail_in(folder.path(), 2, "replay log --episode 1 -o e.mp4");
-    said.says("expected .gif or .apng");
-    said.says("ffmpeg -i");
+    let error = fail_in(folder.path(), 2, "replay log --episode 1 -o e.mp4");
+    error.says("expected .gif or .apng");
+    error.says("ffmpeg -i");
     assert!(!at("e.mp4").exists());
-    let said = fail_in(folder.path(), 1, "replay log --episode 99");
-    said.says("found no episode 99, expected one of episodes 0 to 13");
+    let error = fail_in(folder.path(), 1, "replay log --episode 99");
+    error.says("found no episode 99, expected one of episodes 0 to 13");
 }
 
 /// A drawing of an episode depends on the options, not on the file's extension: different options give different pictures,
@@ -259,8 +259,8 @@ fn each_view_and_modality_gives_a_different_picture() {
             &["replay", text(&kept), "--episode", "0"][..],
             &["film", "find_objects"],
         ] {
-            let said = fail(2, &[command, &wrong].concat());
-            said.says("--modality: found depth of the view from above");
+            let error = fail(2, &[command, &wrong].concat());
+            error.says("--modality: found depth of the view from above");
             assert!(!refused.exists());
         }
     }
@@ -275,8 +275,8 @@ fn agent_is_filmed_and_recorded() {
         "film {}#red --agent onrails {film} a.gif --record a.jsonl",
         world.display()
     );
-    let said = succeed_in(folder.path(), &line);
-    assert!(said.contains("wrote ") && said.contains("a.jsonl"), "{said}");
+    let stdout = succeed_in(folder.path(), &line);
+    assert!(stdout.contains("wrote ") && stdout.contains("a.jsonl"), "{stdout}");
     succeed_in(folder.path(), &format!("replay a.jsonl --episode 0 {film} b.gif"));
     let [film, replayed] = ["a.gif", "b.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
     assert!(film == replayed, "the same film");
@@ -289,7 +289,7 @@ fn world_of_an_episode_is_named() {
     let world = folder.path().join("meadow.json");
     write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#);
     let sheet = folder.path().join("sheet.png");
-    for (name, said) in [
+    for (name, message) in [
         ("moving_object", "moving_object#default, world 0 under seed 0: 2 steps"),
         (
             "moving_object#fast",
@@ -299,7 +299,7 @@ fn world_of_an_episode_is_named() {
     ] {
         let arguments = ["film", name, "--max-steps", "2", "--size", "16", "-o", text(&sheet)];
         let found = succeed(&arguments);
-        assert!(found.contains(said), "{found}");
+        assert!(found.contains(message), "{found}");
     }
 }
 
@@ -313,14 +313,14 @@ fn commands_of_the_page_work() {
         .collect();
     for command in &commands {
         let words: Vec<&str> = command.split(' ').collect();
-        let said = succeed_in(folder.path(), &words);
+        let stdout = succeed_in(folder.path(), &words);
         if let Some(place) = words.iter().position(|word| *word == "-o") {
             let file = folder.path().join(words[place + 1]);
-            assert!(file.is_file(), "{command}: {said}");
+            assert!(file.is_file(), "{command}: {stdout}");
             if words[0] != "curriculum" {
                 assert!(
-                    said.contains(&format!("wrote {}", words[place + 1])),
-                    "{command}: {said}"
+                    stdout.contains(&format!("wrote {}", words[place + 1])),
+                    "{command}: {stdout}"
                 );
             }
         }
@@ -339,13 +339,13 @@ fn film_of_a_world_without_a_limit_ends() {
         let line = format!("film endless.json --agent still --size 32 --json -o sheet.png {more}");
         let done = output(&mut driftworld_in(folder.path(), &line));
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        let said: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
-        let beside = String::from_utf8_lossy(&done.stderr).into_owned();
-        (said["steps"].as_u64(), beside)
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+        let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
+        (json["steps"].as_u64(), stderr)
     };
-    let (steps, said) = film("");
+    let (steps, stderr) = film("");
     assert_eq!(steps, Some(3000));
-    said.says("no limit of steps");
-    said.says("--max-steps");
+    stderr.says("no limit of steps");
+    stderr.says("--max-steps");
     assert_eq!(film("--max-steps 7"), (Some(7), String::new()));
 }

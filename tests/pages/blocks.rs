@@ -1,13 +1,13 @@
-//! Parses the fenced blocks of a page: language, marks, text.
+//! Parses the fenced blocks of a page into language, marks and text.
 
 /// The contents of a fenced block.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Block {
     /// The first word after the fence.
     pub(crate) language: String,
-    /// The further words, such as `output` or `file=my_task.json`.
+    /// The remaining words, such as `output` or `file=my_task.json`.
     pub(crate) marks: Vec<String>,
-    /// With a line break after each line.
+    /// The contents, with a line break after each line.
     pub(crate) text: String,
     /// The line of the opening fence, from 1.
     pub(crate) line: usize,
@@ -24,8 +24,8 @@ impl Block {
     }
 }
 
-/// Every block of a page, in order. A comment `<!-- prepare` is a block as well: commands that make what the page assumes, such
-/// as the reader's own logs.
+/// Every block of a page, in order. A comment `<!-- prepare` is a block too: it holds commands that create files which the page
+/// assumes, such as the reader's own logs.
 pub(crate) fn blocks(page: &str) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut open: Option<Block> = None;

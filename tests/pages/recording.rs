@@ -7,9 +7,9 @@ const CAST: &str = "docs/recordings/first-hour.cast";
 /// A command of a recording, and its output.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Recorded {
-    /// As on a page: continuation lines are indented.
+    /// The command as on a page: continuation lines are indented.
     pub(crate) command: String,
-    /// With a line break after each line.
+    /// The output, with a line break after each line.
     pub(crate) output: String,
 }
 
@@ -32,21 +32,21 @@ fn sent(cast: &str) -> String {
 fn screen(sent: &str) -> Vec<String> {
     let mut lines: Vec<Vec<char>> = vec![Vec::new()];
     let mut column = 0;
-    let mut letters = sent.chars();
-    while let Some(letter) = letters.next() {
+    let mut chars = sent.chars();
+    while let Some(c) = chars.next() {
         let line = lines.last_mut().unwrap();
-        match letter {
+        match c {
             '\r' => column = 0,
             '\n' => lines.push(Vec::new()),
             '\u{1b}' => {
                 // Colour codes end with an m.
-                if letters.by_ref().find(char::is_ascii_alphabetic) == Some('K') {
+                if chars.by_ref().find(char::is_ascii_alphabetic) == Some('K') {
                     line.clear();
                 }
             }
-            letter => {
+            c => {
                 line.resize(line.len().max(column + 1), ' ');
-                line[column] = letter;
+                line[column] = c;
                 column += 1;
             }
         }
@@ -74,9 +74,9 @@ fn commands(screen: &[String]) -> Vec<Recorded> {
             }
         }
     }
-    for one in &mut found {
-        one.output.truncate(one.output.trim_end().len());
-        one.output.push('\n');
+    for command in &mut found {
+        command.output.truncate(command.output.trim_end().len());
+        command.output.push('\n');
     }
     found
 }

@@ -21,7 +21,7 @@ use super::{read, root};
 use crate::tier::quick_or_full;
 
 /// Stands for any output, either lines or the rest of a line.
-const LEFT_OUT: &str = "…";
+const OMISSION: &str = "…";
 
 /// Runs the commands of a page; in the quick tier, only if pages are to be updated.
 pub(crate) fn run(page: &str) {
@@ -45,21 +45,21 @@ pub(crate) fn run(page: &str) {
         if let Some(name) = block.file() {
             std::fs::write(folder.join(name), &block.text).unwrap();
         } else if is_skipped(page, &block, folder) {
-            LEFT_OUT.clone_into(&mut printed);
+            OMISSION.clone_into(&mut printed);
         } else if let Some(feature) = missing_feature(&block, folder) {
             let script = ["bash", "-euo", "pipefail", "-c", &block.text];
             let done = command(&script, folder).output().unwrap();
-            let said = String::from_utf8_lossy(&done.stderr).into_owned();
-            let names_it = said.contains(&format!("`{feature}`"));
-            assert!(!done.status.success() && names_it, "{page}:{}: {said}", block.line);
-            LEFT_OUT.clone_into(&mut printed);
+            let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
+            let names_it = stderr.contains(&format!("`{feature}`"));
+            assert!(!done.status.success() && names_it, "{page}:{}: {stderr}", block.line);
+            OMISSION.clone_into(&mut printed);
         } else if block.language == "sh" && !block.has("by-hand") {
             printed = run_block(page, &block, folder);
             if is_recorded {
                 compare(page, &block, &printed, &mut recorded);
             }
         } else if block.has("output") {
-            if printed == LEFT_OUT || same(&block.text, &printed) {
+            if printed == OMISSION || same(&block.text, &printed) {
                 continue;
             }
             assert!(
@@ -132,9 +132,9 @@ fn is_skipped(page: &str, block: &Block, folder: &Path) -> bool {
 /// The feature that a block needs but the command lacks.
 fn missing_feature<'a>(block: &'a Block, folder: &Path) -> Option<&'a str> {
     let feature = block.marks.iter().find_map(|mark| mark.strip_prefix("feature="))?;
-    let told = command(&["driftworld", "doctor"], folder).output().unwrap().stdout;
-    let told = String::from_utf8_lossy(&told).into_owned();
-    let lacks = told.lines().find_map(|line| line.strip_prefix("build lacks "))?;
+    let report = command(&["driftworld", "doctor"], folder).output().unwrap().stdout;
+    let report = String::from_utf8_lossy(&report).into_owned();
+    let lacks = report.lines().find_map(|line| line.strip_prefix("build lacks "))?;
     lacks.contains(feature).then_some(feature)
 }
 
@@ -182,12 +182,12 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
     printed.lines().flat_map(|line| [line.trim_end(), "\n"]).collect()
 }
 
-/// A shell command that finds our binary.
+/// A command whose PATH begins with the folder of our binary.
 fn command(words: &[&str], folder: &Path) -> Command {
     let named = std::env::var_os("DRIFTWORLD_COMMAND").map(PathBuf::from);
     let ours = named.unwrap_or_else(|| env!("CARGO_BIN_EXE_driftworld").into());
     let mut path = std::env::var("PATH").unwrap_or_default();
-    // As if its virtual environment were active.
+    // Acts as if the virtual environment of `DRIFTWORLD_PYTHON` were active.
     let python = std::env::var("DRIFTWORLD_PYTHON").unwrap_or_default();
     if let Some(folder) = Path::new(&python).parent().filter(|folder| folder.is_dir()) {
         path = format!("{}:{path}", folder.display());
@@ -238,11 +238,11 @@ fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, Strin
     let mut rest = Vec::new();
     shown.read_to_end(&mut rest).unwrap();
     // The command's text follows the picture, which is removed.
-    let said = String::from_utf8_lossy(&rest).replace('\r', "");
-    let said = said
+    let text = String::from_utf8_lossy(&rest).replace('\r', "");
+    let text = text
         .rsplit_once("\x1b[?1049l")
-        .map_or(said.clone(), |(_, said)| said.to_owned());
-    (child.wait().unwrap(), said)
+        .map_or(text.clone(), |(_, text)| text.to_owned());
+    (child.wait().unwrap(), text)
 }
 
 /// A number with too many decimals to read, such as 100.72999999999999. Lines of JSON are data.
@@ -273,7 +273,7 @@ fn same(shown: &str, printed: &str) -> bool {
         lines.map(|line| line + "\n").collect::<String>()
     };
     let (shown, printed) = (narrow(shown).replace("…\n", "…"), narrow(printed));
-    let parts: Vec<&str> = shown.split(LEFT_OUT).collect();
+    let parts: Vec<&str> = shown.split(OMISSION).collect();
     let [first, .., last] = parts.as_slice() else {
         return shown == printed;
     };
