@@ -1,5 +1,5 @@
-//! Every variant of every built-in task is playable and solved by one of the project's agents, and every task has variants that
-//! differ in one element only.
+//! Tests that one of the project's agents solves every variant of every built-in task, and that every task has variants that differ
+//! in one element only.
 
 use driftworld::elements::{ElementsRequest, elements};
 use driftworld::env::{Action, Agent, Environment, OnRailsAgent, ScriptedAgent, Step};
@@ -10,15 +10,15 @@ use driftworld::tasks;
 
 use crate::tier::quick_or_full;
 
-/// Worlds run per variant.
+/// Number of worlds per variant.
 const WORLDS: u64 = 3;
 
-/// Variants in which everything costs. They are solved by avoiding everything: no episode ends in success, and only the reward
-/// per step is earned.
+/// Variants in which every object costs. They are solved by avoiding all objects: no episode ends in success, and the agent earns
+/// only the reward for time.
 const COSTLY: [&str; 2] = ["find_objects#penalty", "moving_object#stings"];
 
-/// Runs a whole episode: returns its reward, its seconds, and its last step.
-fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, f64, Step) {
+/// Runs a whole episode; returns its reward, its duration in seconds, and its last step.
+fn run_episode(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, f64, Step) {
     let name = variant.id();
     let world = Sampler::new(variant, 11).world(index);
     let world = world.unwrap_or_else(|error| panic!("{name}, world {index}: {error}"));
@@ -41,14 +41,14 @@ fn check(task: &str) {
         for index in 0..WORLDS {
             let solved = if COSTLY.contains(&name.as_str()) {
                 let mut still = ScriptedAgent::parse("still", "step").expect("the script is sound");
-                let (earned, seconds, last) = live(&variant, index, &mut still);
+                let (earned, seconds, last) = run_episode(&variant, index, &mut still);
                 let haste = variant
                     .value("haste")
                     .and_then(driftworld::spec::Value::as_number)
                     .unwrap_or(-1.0);
                 !last.success && (earned - haste * seconds).abs() < 1e-6
             } else {
-                let (earned, _, last) = live(&variant, index, &mut OnRailsAgent::new());
+                let (earned, _, last) = run_episode(&variant, index, &mut OnRailsAgent::new());
                 last.success && earned > 0.0
             };
             if !solved {
@@ -90,7 +90,7 @@ fn blue_red_green_is_solved_in_every_variant() {
 }
 
 #[test]
-fn built_in_tasks_claim_every_change_of_their_variants() {
+fn built_in_tasks_declare_every_element_that_their_variants_change() {
     for (task, _) in tasks::BUILT_IN.into_iter().step_by(quick_or_full(3, 1)) {
         let request = ElementsRequest {
             worlds: quick_or_full(1, 4),
@@ -130,7 +130,7 @@ fn each_task_of_the_paper_has_variants_that_change_one_element_alone() {
 }
 
 /// For each task of the paper, two variants that differ only in the reward and call for different behaviour.
-const TURNED: [[&str; 3]; 6] = [
+const OPTIMUM_CHANGES: [[&str; 3]; 6] = [
     ["find_objects", "blue", "turned"],
     ["get_to_goal", "bags", "traps"],
     ["select_object", "green", "yellow"],
@@ -140,23 +140,23 @@ const TURNED: [[&str; 3]; 6] = [
 ];
 
 /// The rewards of an episode's steps, and the actions taken.
-fn replayed(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f64>, Vec<Action>) {
+fn replay(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f64>, Vec<Action>) {
     let world = Sampler::new(variant, 11).world(index);
     let mut environment = Environment::new(world.unwrap_or_else(|error| panic!("{error}")));
     let mut expert = OnRailsAgent::new();
-    let (mut paid, mut taken) = (Vec::new(), Vec::new());
+    let (mut rewards, mut taken) = (Vec::new(), Vec::new());
     while !environment.ended() && actions.is_none_or(|actions| taken.len() < actions.len()) {
         let action = actions.map_or_else(|| expert.act(&environment), |actions| actions[taken.len()]);
         taken.push(action);
         let step = environment.step(action).unwrap_or_else(|error| panic!("{error}"));
-        paid.push(step.reward);
+        rewards.push(step.reward);
     }
-    (paid, taken)
+    (rewards, taken)
 }
 
 #[test]
 fn reward_variants_change_the_optimum_and_reveal_it_within_an_episode() {
-    for [task, a, b] in TURNED {
+    for [task, a, b] in OPTIMUM_CHANGES {
         let variant = |name: &str| {
             let all = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
             let own = all.into_iter().find(|variant| variant.name() == name);
@@ -167,9 +167,9 @@ fn reward_variants_change_the_optimum_and_reveal_it_within_an_episode() {
             ..ElementsRequest::between(task, a, b)
         };
         let found = elements(&request).unwrap_or_else(|error| panic!("{error}"));
-        let tried = &found.variants[0];
-        assert_eq!(tried.elements(), [Element::R], "{task}: {a} and {b}");
-        let optimum = tried
+        let measured = &found.variants[0];
+        assert_eq!(measured.elements(), [Element::R], "{task}: {a} and {b}");
+        let optimum = measured
             .optimum
             .unwrap_or_else(|| panic!("{task}: {b} changes the reward"));
         assert!(
@@ -178,9 +178,9 @@ fn reward_variants_change_the_optimum_and_reveal_it_within_an_episode() {
         );
         // In the worlds of `b`, the actions of `a`'s expert earn different rewards before half of its route is done.
         for index in 0..WORLDS {
-            let (expected, actions) = replayed(&variant(a), index, None);
-            let (paid, _) = replayed(&variant(b), index, Some(&actions));
-            let first = expected.iter().zip(&paid).position(|(expected, paid)| expected != paid);
+            let (expected, actions) = replay(&variant(a), index, None);
+            let (rewards, _) = replay(&variant(b), index, Some(&actions));
+            let first = expected.iter().zip(&rewards).position(|(a, b)| a != b);
             let first = first.unwrap_or_else(|| panic!("{task}, world {index}: {a} and {b} pay the same"));
             assert!(
                 first * 2 < expected.len(),

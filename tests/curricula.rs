@@ -1,4 +1,4 @@
-//! The curricula in `examples/curricula/`: they are sound, change only what they claim, and can be run.
+//! Tests the curricula in `examples/curricula/`: they are sound, change only what they claim, and can be run.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -75,7 +75,7 @@ fn paper_example_changes_what_it_says() {
     assert_eq!(
         steps,
         ["S R", "S R", "S R O"],
-        "only the last block changes what is seen of the surroundings"
+        "only the last block changes how the surroundings look"
     );
 }
 
@@ -143,8 +143,8 @@ fn training_and_evaluation_share_no_world() {
     }
 }
 
-/// Runs a curriculum with two experiences in each regime.
-fn live(name: &str, agent: &str) {
+/// Runs a curriculum shortened to two experiences per regime, in all of which the agent must succeed.
+fn run_briefly(name: &str, agent: &str) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let mut document: Value = serde_json::from_str(&text(name)).expect("the curriculum is JSON");
     for block in document["blocks"].as_array_mut().expect("it has blocks") {
@@ -178,7 +178,7 @@ fn live(name: &str, agent: &str) {
 fn planner_runs_and_solves_every_curriculum() {
     let names = "reward state transition observation action blue_red_green map modality interaction drift across_tasks";
     for (_, name) in names.split(' ').enumerate().filter(|(number, _)| is_turn(*number, 3)) {
-        live(name, "onrails");
+        run_briefly(name, "onrails");
     }
 }
 
@@ -187,5 +187,5 @@ fn script_runs_a_curriculum() {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let script = folder.path().join("tour.txt");
     std::fs::write(&script, "touch goal # wherever it lies\ntour\n").expect("the script can be written");
-    live("action", &format!("scripted:{}", script.display()));
+    run_briefly("action", &format!("scripted:{}", script.display()));
 }

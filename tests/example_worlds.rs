@@ -1,4 +1,4 @@
-//! The task families: each is a valid task with a page and a film, and the planner succeeds in its worlds.
+//! Tests the task families: each is a valid task with a page and a film, and the planner succeeds in its worlds.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use driftworld::generator::Sampler;
 use driftworld::spec::TaskSpec;
 use driftworld::tasks;
 
-/// Worlds run per variant.
+/// Number of worlds per variant.
 const WORLDS: u64 = 4;
 
 /// The folder of the project.
@@ -112,7 +112,7 @@ fn guide_shows_its_worlds() {
     }
 }
 
-/// A document that is not listed in `FAMILIES` could not be loaded by name.
+/// A document can only be loaded by name if it is listed in `FAMILIES`.
 #[test]
 fn every_file_of_the_folder_is_a_family() {
     let mut named: Vec<String> = tasks::FAMILIES

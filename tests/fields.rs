@@ -268,7 +268,7 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
         assert_eq!(world_of(&task, "second"), plain(&template), "{pointer}");
         let [first, second] = ["first", "second"].map(|name| task.variant(name).expect("it is declared"));
         let distance = variant_distance(&first, &second, &Weights::default()).expect("they are of one task");
-        let of_row: BTreeSet<Element> = place
+        let row_elements: BTreeSet<Element> = place
             .field
             .compared
             .comparisons()
@@ -276,10 +276,10 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
             .map(|part| part.element())
             .collect();
         for element in Element::ALL.iter().filter(|element| **element == element.coarse()) {
-            let apart = distance.element(*element).unwrap_or(0.0);
+            let in_element = distance.element(*element).unwrap_or(0.0);
             assert_eq!(
-                apart > 0.0,
-                of_row.contains(element),
+                in_element > 0.0,
+                row_elements.contains(element),
                 "{pointer} in {}",
                 element.letter()
             );

@@ -1,9 +1,9 @@
-//! Lists the files of a folder, to compare it with an earlier state. Crates include this file as their module `files_below`.
+//! Reads all files below a folder, to compare two states of it. Crates include this file as their module `files_below`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Every file below a folder by its relative path; none if the folder does not exist.
+/// The contents of every file below a folder, by relative path; empty if the folder does not exist.
 pub(crate) fn files_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

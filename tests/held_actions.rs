@@ -1,5 +1,5 @@
-//! The duration for which an action is held changes only the transitions: the same motion over the same seconds gets the same
-//! reward for time, and ends at the same second.
+//! Tests that the number of time steps per action changes only the transitions: equal motion over equal time gets the same reward
+//! for time, and ends at the same second.
 
 use driftworld::env::{Action, Environment};
 use driftworld::generator::Sampler;
@@ -7,7 +7,7 @@ use driftworld::similarity::{Weights, world_distance};
 use driftworld::spec::{ActionModel, Element, StateFeature, Variant, WorldDraft};
 use driftworld::tasks;
 
-/// The result of an episode: the agent's final state, the seconds, the reward, whether a limit cut it off.
+/// The result of an episode: the agent's final pose, the duration in seconds, the reward, and whether a limit truncated it.
 #[derive(Debug)]
 struct Course {
     end: ([f32; 2], f32),
@@ -41,7 +41,7 @@ fn draw(variant: &Variant) -> WorldDraft {
 }
 
 #[test]
-fn held_action_is_paid_and_cut_off_by_the_second() {
+fn held_action_gets_reward_and_limit_by_the_second() {
     let mut cut_off = 0;
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
@@ -62,23 +62,23 @@ fn held_action_is_paid_and_cut_off_by_the_second() {
             }
         }
     }
-    assert!(cut_off > 100, "limits of time are met, too: {cut_off} times");
+    assert!(cut_off > 100, "too few episodes were truncated: {cut_off}");
 }
 
 #[test]
-fn time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
+fn time_step_of_any_length_gets_reward_and_limit_by_the_second() {
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
         let mut world = draw(&variants[0]);
         world.objects.clear();
-        let most = world.max_seconds;
-        assert!(most > 0.0 && world.max_steps == 0, "{task} has a limit of seconds");
+        let limit = world.max_seconds;
+        assert!(limit > 0.0 && world.max_steps == 0, "{task} has a limit of seconds");
         for time_step in [0.02, 0.05, 0.1, 0.25] {
             world.agent_params.time_step = time_step;
             let course = live(&world, [0.0; 3]);
-            let pay = world.rules.reward_per_second * most;
+            let pay = world.rules.reward_per_second * limit;
             assert!(
-                (course.seconds - most).abs() < 1e-6 && course.truncated,
+                (course.seconds - limit).abs() < 1e-6 && course.truncated,
                 "{task}: {course:?}"
             );
             assert!((course.paid - pay).abs() < 1e-6, "{task}: {course:?}, expected {pay}");
@@ -87,7 +87,7 @@ fn time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
 }
 
 #[test]
-fn held_variants_change_the_transitions_alone() {
+fn held_variants_change_only_the_transitions() {
     let mut compared = 0;
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");

@@ -1,4 +1,4 @@
-//! Pictures do not depend on the instructions that a CPU has: tested in all families, along the planner's paths.
+//! Tests that pictures do not depend on the CPU's instruction set, in all families and along the planner's paths.
 
 use driftworld::env::{Agent, CpuRenderer, Environment, Frame, OnRailsAgent};
 use driftworld::{generator, tasks};
@@ -9,16 +9,16 @@ use crate::tier::quick_or_full;
 const SIZES: [[u32; 2]; 6] = [[160, 120], [84, 84], [101, 77], [90, 60], [33, 32], [7, 9]];
 
 /// Compares the pictures of each instruction set along the first steps of a variant's world; returns the number of steps.
-fn compare(name: &str, place: usize, sizes: &[[u32; 2]], steps: usize) -> usize {
+fn compare(name: &str, index: usize, sizes: &[[u32; 2]], steps: usize) -> usize {
     let task = tasks::task(name).expect("it is built in");
     let variants = task.all_variants();
-    let variant = &variants[place % variants.len()];
-    let world = generator::sample(variant, 3, place as u64).expect("it can be drawn");
+    let variant = &variants[index % variants.len()];
+    let world = generator::sample(variant, 3, index as u64).expect("it can be drawn");
     let (mut environment, mut agent) = (Environment::new(world), OnRailsAgent::new());
     let mut compared = 0;
     for (step, &[width, height]) in sizes.iter().cycle().take(steps).enumerate() {
         let action = agent.act(&environment);
-        let ended = environment.step(action).expect("the planner may do it").ended();
+        let ended = environment.step(action).expect("the action is valid").ended();
         let mut frames = CpuRenderer::each_instruction_set()
             .into_iter()
             .map(|(set, mut renderer)| {
@@ -26,7 +26,7 @@ fn compare(name: &str, place: usize, sizes: &[[u32; 2]], steps: usize) -> usize 
                 renderer.render(environment.scene(), &environment.camera(), &mut frame);
                 (set, frame)
             });
-        let (_, portable) = frames.next().expect("every CPU has one");
+        let (_, portable) = frames.next().expect("every CPU has a portable instruction set");
         for (set, frame) in frames {
             let same =
                 frame.rgb == portable.rgb && frame.depth == portable.depth && frame.instance == portable.instance;
@@ -42,9 +42,9 @@ fn compare(name: &str, place: usize, sizes: &[[u32; 2]], steps: usize) -> usize 
 
 #[test]
 fn pictures_do_not_depend_on_instructions() {
-    // Ground behind a door, dark at its wall's foot, was once left bright by the narrowest vectors.
+    // Ground behind a door, darkened at the foot of the wall, was once too bright with the narrowest vectors.
     assert_eq!(compare("key_corridor", 2, &[[160, 120]], 25), 25);
-    // A wall as far from its foot as the darkness reaches, to the last bit of rounding.
+    // A point of a wall exactly as far from its foot as the darkening reaches, to the last bit.
     assert_eq!(compare("obstacle_course", 7, &[[320, 240]], 38), 38);
     let names: Vec<&str> = tasks::groups()
         .flat_map(|(_, names)| names)
@@ -52,8 +52,8 @@ fn pictures_do_not_depend_on_instructions() {
         .collect();
     let (variants, steps) = (quick_or_full(1, 6), quick_or_full(6, 60));
     for name in names {
-        for place in 0..variants {
-            assert!(compare(name, place, &SIZES, steps) > 0, "{name}");
+        for index in 0..variants {
+            assert!(compare(name, index, &SIZES, steps) > 0, "{name}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Memory for checking a document, whatever its contents: at most 40 times its size plus a constant.
+//! Tests the memory needed to check a document: at most 40 times its size plus a constant, whatever its contents.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -9,46 +9,46 @@ use driftworld::tasks;
 
 use crate::is_turn;
 
-/// The system's allocator, with a count of each thread's current memory.
+/// The system's allocator, which also counts the current and the peak memory of each thread.
 struct Counting;
 
 thread_local! {
-    static TAKEN: Cell<isize> = const { Cell::new(0) };
-    static MOST: Cell<isize> = const { Cell::new(0) };
+    static CURRENT: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-fn take(bytes: usize) {
-    let taken = TAKEN.get() + bytes as isize;
-    TAKEN.set(taken);
-    MOST.set(MOST.get().max(taken));
+fn add(bytes: usize) {
+    let current = CURRENT.get() + bytes as isize;
+    CURRENT.set(current);
+    PEAK.set(PEAK.get().max(current));
 }
 
-fn give_back(bytes: usize) {
-    TAKEN.set(TAKEN.get() - bytes as isize);
+fn subtract(bytes: usize) {
+    CURRENT.set(CURRENT.get() - bytes as isize);
 }
 
 #[expect(
     unsafe_code,
-    reason = "an allocator cannot be written without; this one adds to numbers and asks the system"
+    reason = "an allocator needs unsafe code; this one only counts and calls the system's"
 )]
 // SAFETY: every call is passed unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        take(layout.size());
+        add(layout.size());
         // SAFETY: the caller upholds the system allocator's contract.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        give_back(layout.size());
+        subtract(layout.size());
         // SAFETY: as above.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // Large blocks are moved without being copied: the old and the new one never coexist.
-        give_back(layout.size());
-        take(size);
+        subtract(layout.size());
+        add(size);
         // SAFETY: as above.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -63,8 +63,8 @@ const FACTOR: usize = 40;
 /// Additional bytes for any document, however small: lists of problems and their texts.
 const BASE: usize = 8 << 20;
 
-/// Places in documents of each kind: the filling replaces `@`.
-const PLACES: [&str; 27] = [
+/// Templates of documents of each kind: a filling replaces `@`.
+const TEMPLATES: [&str; 27] = [
     r#"{"name":"t","variants":{"a":{"a":@}}}"#,
     r#"{"name":"t","variants":{"a":@}}"#,
     r#"{"name":"t","variants":@}"#,
@@ -94,7 +94,7 @@ const PLACES: [&str; 27] = [
     r#"{"scenario":@}"#,
 ];
 
-/// Fillings for a place: the repeated parts of a list or an object.
+/// Fillings for a template: the opening, the repeated part and the closing of a list or an object.
 const FILLINGS: [(&str, &str, &str); 24] = [
     ("[", "0", "]"),
     ("[", "[]", "]"),
@@ -179,38 +179,38 @@ fn kinds(text: &str) -> Vec<Kind> {
 
 /// Peak memory of a check in bytes, and its result.
 fn measured(text: &str, kind: Kind, classes: &Classes) -> (usize, Checked) {
-    let before = TAKEN.get();
-    MOST.set(before);
+    let before = CURRENT.get();
+    PEAK.set(before);
     let checked = check("d.json", text, kind, &mut tasks::task, classes);
     // Formatting the error is part of the check.
     drop(checked.error.as_ref().map(ToString::to_string));
-    ((MOST.get() - before).unsigned_abs(), checked)
+    ((PEAK.get() - before).unsigned_abs(), checked)
 }
 
-/// Checks the memory limit for every filling at these places.
-fn hold(places: &[&str]) {
+/// Checks the memory limit for every filling of these templates.
+fn check_limit(templates: &[&str]) {
     let classes = tasks::classes(&driftworld::env::Catalogue::default());
-    // Larger documents can be tried by hand, which takes minutes.
+    // Set this to test larger documents by hand, which takes minutes.
     let bytes = std::env::var("DRIFTWORLD_LIMITS_BYTES");
     let bytes = bytes.ok().and_then(|bytes| bytes.parse().ok()).unwrap_or(60_000);
     let mut wrong = Vec::new();
-    for (number, place) in places.iter().enumerate() {
+    for (number, template) in templates.iter().enumerate() {
         let repeated = FILLINGS.iter().map(|filling| filled(*filling, bytes));
         let fillings = repeated.chain(others(bytes)).enumerate();
         for (_, filling) in fillings.filter(|(turn, _)| is_turn(turn + number, 4)) {
-            let text = place.replace('@', &filling);
+            let text = template.replace('@', &filling);
             for kind in kinds(&text) {
                 // Schemas are built on first use.
-                drop(measured(&place.replace('@', "0"), kind, &classes));
-                let (most, checked) = measured(&text, kind, &classes);
+                drop(measured(&template.replace('@', "0"), kind, &classes));
+                let (peak, checked) = measured(&text, kind, &classes);
                 let problems = checked.error.as_ref().map_or(0, |error| error.problems().len());
-                assert!(problems <= MAX_PROBLEMS, "{place}: {problems} problems");
+                assert!(problems <= MAX_PROBLEMS, "{template}: {problems} problems");
                 let warnings = checked.warnings.len();
-                assert!(warnings <= MAX_PROBLEMS + 1, "{place}: {warnings} warnings");
-                if most > FACTOR * text.len() + BASE {
-                    let (start, times) = (filling.chars().take(60).collect::<String>(), most / text.len());
+                assert!(warnings <= MAX_PROBLEMS + 1, "{template}: {warnings} warnings");
+                if peak > FACTOR * text.len() + BASE {
+                    let (start, times) = (filling.chars().take(60).collect::<String>(), peak / text.len());
                     wrong.push(format!(
-                        "{kind:?} {place} with {start}: {times} times, {most} bytes; {problems} problems"
+                        "{kind:?} {template} with {start}: {times} times, {peak} bytes; {problems} problems"
                     ));
                 }
             }
@@ -221,20 +221,20 @@ fn hold(places: &[&str]) {
 
 #[test]
 fn checking_a_task_takes_bounded_memory() {
-    hold(&PLACES[..8]);
+    check_limit(&TEMPLATES[..8]);
 }
 
 #[test]
 fn checking_placements_of_a_task_takes_bounded_memory() {
-    hold(&PLACES[8..15]);
+    check_limit(&TEMPLATES[8..15]);
 }
 
 #[test]
 fn checking_a_world_takes_bounded_memory() {
-    hold(&PLACES[15..21]);
+    check_limit(&TEMPLATES[15..21]);
 }
 
 #[test]
 fn checking_scenarios_and_maps_takes_bounded_memory() {
-    hold(&PLACES[21..]);
+    check_limit(&TEMPLATES[21..]);
 }

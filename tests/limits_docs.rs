@@ -1,14 +1,14 @@
-//! `docs/limits.md` matches the code: each limit in a table equals the constant, or the key of a schema, named beside it.
+//! Tests that `docs/limits.md` matches the code: each limit in a table equals the constant or the schema's key named beside it.
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
-/// A limit as documented, and its source.
+/// A documented limit, and its source.
 struct Row {
     line: String,
-    said: f64,
+    value: f64,
     file: String,
     name: String,
 }
@@ -25,12 +25,12 @@ fn read(path: &str) -> String {
 fn rows(page: &str) -> Vec<Row> {
     let row = |line: &str| {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
-        let [_, said, origin] = cells[..] else { return None };
+        let [_, value, origin] = cells[..] else { return None };
         let mut origin = origin.split('`').skip(1).step_by(2);
         let (file, name) = (origin.next()?, origin.next()?);
         Some(Row {
             line: line.to_owned(),
-            said: number(said),
+            value: number(value),
             file: file.to_owned(),
             name: name.to_owned(),
         })
@@ -41,9 +41,9 @@ fn rows(page: &str) -> Vec<Row> {
         .collect()
 }
 
-/// `64 MiB`, `4,000,000`, `400 bytes`, `4096 × 4096 pixels`.
-fn number(said: &str) -> f64 {
-    let words: Vec<&str> = said.split_whitespace().collect();
+/// Parses texts such as `64 MiB`, `4,000,000`, `400 bytes`, `4096 × 4096 pixels`.
+fn number(value: &str) -> f64 {
+    let words: Vec<&str> = value.split_whitespace().collect();
     words.iter().fold(1.0, |product, word| match *word {
         "KiB" => product * 1024.0,
         "MiB" => product * 1_048_576.0,
@@ -81,7 +81,7 @@ fn limits_match_the_code() {
         } else {
             constant(&text, &row.name)
         };
-        assert_eq!(found, Some(row.said), "{}", row.line);
+        assert_eq!(found, Some(row.value), "{}", row.line);
     }
 }
 

@@ -1,5 +1,5 @@
-//! Variants of the built-in tasks that claim to change only looks do not affect motion: the same seed and the same actions give
-//! the same path, to the last bit, in walks that touch things.
+//! Tests that variants of the built-in tasks that claim to change only looks do not affect motion: the same seed and actions give
+//! the same path, bit for bit, in walks that touch objects.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ const STEPS: usize = 300;
 /// Worlds per variant.
 const WORLDS: u64 = 6;
 
-/// A built-in task with its text modified.
+/// A built-in task with modified text.
 fn task(name: &str, change: impl Fn(&str) -> String) -> Arc<TaskSpec> {
     let (_, text) = tasks::BUILT_IN
         .iter()
@@ -24,7 +24,7 @@ fn task(name: &str, change: impl Fn(&str) -> String) -> Arc<TaskSpec> {
     TaskSpec::from_json(name, &change(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The task with objects whose bodies match their looks.
+/// The task without body models, so that the bodies of objects follow their looks.
 fn with_bodies_of_looks(name: &str) -> Arc<TaskSpec> {
     task(name, |text| {
         let cut = ["1", "2", "3"].map(|model| format!(r#" "body_model": "{model}","#));
@@ -44,8 +44,7 @@ fn of_looks(task: &Arc<TaskSpec>) -> Vec<Variant> {
     variants.iter().filter(claims_looks).cloned().collect()
 }
 
-/// Everything along a walk, as bits: positions, headings, presence and rewards, step by step, and the number of steps in which
-/// something happened to an object.
+/// The path of a walk, step by step and as bits: positions, headings, presence and rewards. Also the number of steps with events.
 fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     let mut environment = Environment::new(world);
     let mut path = Vec::new();
@@ -71,14 +70,14 @@ fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     (path, touches)
 }
 
-/// The actions of an agent that touches one thing after another, in some walks with random steps between them.
+/// The actions of an agent that touches one kind of object after another, in some walks with random actions in between.
 fn walk(world: &World, seed: u64) -> Vec<Action> {
     let tags: BTreeSet<&str> = world
         .objects
         .iter()
         .filter_map(|object| object.tag.as_deref())
         .collect();
-    // Past the side of a thing, not only into its centre: there bodies differ most.
+    // Pass objects at their sides, where bodies differ most, instead of only walking into their centres.
     let turn = 40 - (seed as i64 % 5) * 20;
     let visit =
         |tag: &&str| format!("near {tag} 2 90\nstep 2 4 {turn} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n");
@@ -101,23 +100,23 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
     actions
 }
 
-/// For each variant of looks: its name, the number of walks that touched something, and the number of walks whose path differs.
+/// For each variant of looks: its name, the number of walks that touched an object, and the number of walks with a different path.
 fn paths(task: &Arc<TaskSpec>) -> Vec<(String, usize, usize)> {
     let first = &task.all_variants()[0];
     let world = |variant: &Variant, index| {
         let world = Sampler::new(variant, 77).world(index);
         world.unwrap_or_else(|error| panic!("{}: {error}", variant.id()))
     };
-    let tried = (0..WORLDS).map(|index| {
+    let walks = (0..WORLDS).map(|index| {
         let world = world(first, index);
         let actions = walk(&world, index);
         let path = path(world, &actions);
         (index, actions, path)
     });
-    let tried: Vec<_> = tried.collect();
+    let walks: Vec<_> = walks.collect();
     let of_variant = |variant: &Variant| {
         let (mut touched, mut differ) = (0, 0);
-        for (index, actions, own) in &tried {
+        for (index, actions, own) in &walks {
             let other = path(world(variant, *index), actions);
             touched += usize::from(own.1 > 0);
             differ += usize::from(own.0 != other.0);

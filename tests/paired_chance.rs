@@ -176,8 +176,8 @@ fn worlds() -> Vec<World> {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
         let variant = &variants[(7 * number + 3) % variants.len()];
         let world = draw(variant, number as u64, 5).edit(|world| {
-            spice(world);
-            // Every other world has no seed, so that the positions of things decide.
+            add_examples(world);
+            // Every other world has no seed, so that the positions of objects decide.
             world.seed = world.seed.filter(|_| number % 2 == 0);
             if number % 2 == 0 {
                 world.environment_params.looks = Looks::default();
@@ -194,7 +194,7 @@ fn draw(variant: &Variant, seed: u64, index: u64) -> World {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn spice(world: &mut WorldDraft) {
+fn add_examples(world: &mut WorldDraft) {
     world.agent_params.action_model = ActionModel::ByVelocity;
     // Endings are tested separately.
     world.limit_steps(0);
@@ -236,7 +236,7 @@ fn spice(world: &mut WorldDraft) {
         color: None,
     });
     world.objects.extend([box_, coin, arm, after, wanderer, hunter, prey]);
-    // Nobody enters it: the effects of zones are tested in `env`.
+    // No agent or object enters it: the effects of zones are tested in `env`.
     let [east, north] = world.environment_params.arena_size().map(|side| side / 2.0);
     let zone = serde_json::json!({ "disc": { "center": [east, north], "radius": 0.1 } });
     let zone = serde_json::from_value(zone).expect("it is a zone");
@@ -245,11 +245,11 @@ fn spice(world: &mut WorldDraft) {
 
 /// All paths of an episode, as bits: the agent's and every object's position, heading and presence, step by step. The agent acts
 /// at random, with its own seed.
-fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
+fn paths_of(world: &World, seed: u64) -> Vec<Vec<u32>> {
     let mut environment = Environment::new(world.clone());
     let mut agent = RandomAgent::new(seed);
-    let mut ways = Vec::with_capacity(STEPS);
-    while ways.len() < STEPS && !environment.ended() {
+    let mut paths = Vec::with_capacity(STEPS);
+    while paths.len() < STEPS && !environment.ended() {
         let action = agent.act(&environment);
         environment.step(action).unwrap_or_else(|error| panic!("{error}"));
         let now = environment.agent();
@@ -262,13 +262,13 @@ fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
             bits.extend([item.position[0].to_bits(), item.position[1].to_bits()]);
             bits.extend([item.heading_deg.to_bits(), u32::from(item.visible)]);
         }
-        ways.push(bits);
+        paths.push(bits);
     }
-    ways
+    paths
 }
 
 /// The first step in which two episodes differ; one may end before the other.
-fn parting(a: &[Vec<u32>], b: &[Vec<u32>]) -> Option<usize> {
+fn first_difference(a: &[Vec<u32>], b: &[Vec<u32>]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }
 
@@ -341,7 +341,7 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
     let unjudged: Vec<&String> = found.keys().filter(|key| verdict(key).is_none()).collect();
     assert!(
         unjudged.is_empty(),
-        "do ways depend on these keys? Say so in VERDICTS: {unjudged:?}"
+        "do paths depend on these keys? Add them to VERDICTS: {unjudged:?}"
     );
     let gone = VERDICTS.iter().filter(|(key, _)| {
         !found
@@ -349,7 +349,7 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
             .any(|leaf| leaf == key || leaf.strip_prefix(key).is_some_and(|rest| rest.starts_with('/')))
     });
     let gone: Vec<&(&str, Verdict)> = gone.collect();
-    assert!(gone.is_empty(), "no document has these: {gone:?}");
+    assert!(gone.is_empty(), "no document has these keys: {gone:?}");
 
     // Parts that only some documents contain are added whole to all worlds.
     let wholes = ["/image_params", "/rules/shaping", "/rules/success", "/rules/failure"];
@@ -368,13 +368,13 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
     let mut tried: BTreeMap<String, usize> = BTreeMap::new();
     for (number, world) in worlds.iter().enumerate() {
         let seed = number as u64;
-        let before = ways(world, seed);
+        let before = paths_of(world, seed);
         assert_eq!(before.len(), STEPS);
         let moved = before
             .first()
             .zip(before.last())
             .is_some_and(|(first, last)| first[3..] != last[3..]);
-        assert!(moved, "things move in world {number}");
+        assert!(moved, "objects move in world {number}");
         // All at once; single keys are tried only after a failure.
         let mut changed = world.clone();
         for key in &keys {
@@ -391,23 +391,23 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
             }
             (world.rules.success, world.rules.failure) = (Vec::new(), Vec::new());
         });
-        let after = ways(&changed.expect("the world is sound"), seed);
-        if parting(&before, &after).is_some() || after.len() < STEPS {
-            let guilty = keys.iter().filter_map(|key| {
+        let after = paths_of(&changed.expect("the world is sound"), seed);
+        if first_difference(&before, &after).is_some() || after.len() < STEPS {
+            let culprits = keys.iter().filter_map(|key| {
                 let alone = change(world, key, &examples_of(key))?;
-                parting(&before, &ways(&alone, seed)).map(|step| format!("{key} in step {step}"))
+                first_difference(&before, &paths_of(&alone, seed)).map(|step| format!("{key} in step {step}"))
             });
-            panic!("world {number}: ways part by {:?}", guilty.collect::<Vec<_>>());
+            panic!("world {number}: paths differ by {:?}", culprits.collect::<Vec<_>>());
         }
     }
     keys.retain(|key| !tried.contains_key(key));
-    assert!(keys.is_empty(), "nowhere changed: {keys:?}");
+    assert!(keys.is_empty(), "changed in no world: {keys:?}");
 }
 
 #[test]
 fn endings_do_not_change_paths_before_the_end() {
     let world = &worlds()[0];
-    let before = ways(world, 9);
+    let before = paths_of(world, 9);
     for (key, value) in [
         ("max_steps", serde_json::json!(40)),
         ("max_seconds", serde_json::json!(3.05)),
@@ -423,16 +423,16 @@ fn endings_do_not_change_paths_before_the_end() {
         let mut document = serde_json::to_value(world).expect("a world serialises");
         document[key] = value;
         let ending = World::from_json(key, &document.to_string()).unwrap_or_else(|error| panic!("{error}"));
-        let after = ways(&ending, 9);
+        let after = paths_of(&ending, 9);
         assert!(after.len() < STEPS, "{key} ends it");
-        assert_eq!(parting(&before, &after), None, "{key}");
+        assert_eq!(first_difference(&before, &after), None, "{key}");
     }
 }
 
 #[test]
 fn pay_and_light_do_not_move_wandering_balls() {
     let task = tasks::variants("moving_object").expect("it is built in");
-    let places = |name: &str| {
+    let positions = |name: &str| {
         let variant = task.iter().find(|variant| variant.name() == name).expect("it is there");
         let mut environment = Environment::new(draw(variant, 3, 0));
         for _ in 0..60 {
@@ -443,11 +443,11 @@ fn pay_and_light_do_not_move_wandering_balls() {
         let items = environment.scene().items.iter();
         items.map(|item| (item.position, item.heading_deg)).collect::<Vec<_>>()
     };
-    let wandering = places("wandering");
+    let wandering = positions("wandering");
     for name in ["modest", "dusk", "blue", "urgent", "patient"] {
-        assert_eq!(places(name), wandering, "{name}");
+        assert_eq!(positions(name), wandering, "{name}");
     }
-    assert_ne!(places("fast"), wandering);
+    assert_ne!(positions("fast"), wandering);
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! A recorded episode replays to the last bit: observations, rewards and ending; in all built-in tasks and example worlds, with
-//! any agent and action space.
+//! Tests that recorded episodes replay bit for bit (observations, rewards and ending), in all built-in tasks and example worlds,
+//! with any agent and action space.
 
 use std::io::BufReader;
 use std::path::Path;
@@ -17,17 +17,17 @@ use proptest::sample::Index;
 
 /// The observation, state, reward and ending of a step.
 #[derive(Debug, PartialEq)]
-struct Seen {
+struct Observed {
     pixels: Vec<u8>,
     state: Vec<u32>,
     reward: u64,
     ended_by: Option<EndedBy>,
 }
 
-fn seen(environment: &mut Environment, reward: f64, ended_by: Option<EndedBy>) -> Seen {
+fn observed(environment: &mut Environment, reward: f64, ended_by: Option<EndedBy>) -> Observed {
     let frame = environment.observe_at(16, 16).expect("the size is allowed");
     let depth = frame.depth.iter().flat_map(|metres| metres.to_bits().to_le_bytes());
-    Seen {
+    Observed {
         pixels: frame
             .rgb
             .iter()
@@ -42,19 +42,19 @@ fn seen(environment: &mut Environment, reward: f64, ended_by: Option<EndedBy>) -
 }
 
 /// Runs an episode, and records it.
-fn live(world: &World, agent: &mut dyn Agent, seed: u64, most: u32) -> (Vec<Seen>, Recording) {
+fn run_recorded(world: &World, agent: &mut dyn Agent, seed: u64, max_steps: u32) -> (Vec<Observed>, Recording) {
     let mut environment = Environment::new(world.clone());
     let mut recorder = Recorder::default();
     recorder.begin(world.clone());
     agent.begin(seed);
-    let mut course = vec![seen(&mut environment, 0.0, None)];
+    let mut course = vec![observed(&mut environment, 0.0, None)];
     let mut ended_by = None;
-    while !environment.ended() && recorder.num_steps() < most {
+    while !environment.ended() && recorder.num_steps() < max_steps {
         let action = agent.act(&environment);
         let step = environment.step(action).expect("agents act as the world allows");
         recorder.step(action);
         ended_by = step.ended_by;
-        course.push(seen(&mut environment, step.reward, step.ended_by));
+        course.push(observed(&mut environment, step.reward, step.ended_by));
     }
     let recording = recorder.recording(&environment, ended_by);
     (course, recording)
@@ -76,24 +76,24 @@ fn read(text: &str) -> Result<Vec<Recording>, EnvError> {
     Ok(found)
 }
 
-fn replayed(recording: &Recording) -> Vec<Seen> {
+fn replayed(recording: &Recording) -> Vec<Observed> {
     let mut replay = Replay::new(recording, &Catalogue::default());
-    let mut course = vec![seen(replay.environment(), 0.0, None)];
-    while let Some(step) = replay.step().expect("it goes as it went") {
-        course.push(seen(replay.environment(), step.reward, step.ended_by));
+    let mut course = vec![observed(replay.environment(), 0.0, None)];
+    while let Some(step) = replay.step().expect("the replay continues") {
+        course.push(observed(replay.environment(), step.reward, step.ended_by));
     }
-    replay.check().expect("it comes out as it was recorded");
+    replay.check().expect("the replay matches the recording");
     course
 }
 
-/// Runs, writes, reads and replays an episode: all must be the same.
+/// Runs, writes, reads and replays an episode. The recording must be unchanged, and the replay equal to the run.
 #[track_caller]
-fn check(name: &str, world: &World, agent: &mut dyn Agent, seed: u64, most: u32) {
-    let (course, recording) = live(world, agent, seed, most);
+fn check(name: &str, world: &World, agent: &mut dyn Agent, seed: u64, max_steps: u32) {
+    let (course, recording) = run_recorded(world, agent, seed, max_steps);
     let text = written(std::slice::from_ref(&recording));
     let back = read(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert_eq!(back, [recording], "{name}");
-    assert!(replayed(&back[0]) == course, "{name}: what is seen or paid differs");
+    assert!(replayed(&back[0]) == course, "{name}: observations or rewards differ");
 }
 
 static ALL_VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
@@ -112,7 +112,7 @@ static ALL_VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
 });
 
 /// A world with a different action interface, if requested.
-fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interact: bool) -> World {
+fn with_actions(world: World, actions: Option<ActionSpace>, frame_skip: u32, interact: bool) -> World {
     let edited = world.edit(|world| {
         let agent = &mut world.agent_params;
         agent.frame_skip = frame_skip;
@@ -123,7 +123,7 @@ fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interac
             agent.actions = actions;
         }
     });
-    edited.expect("any world may be acted in so")
+    edited.expect("any world accepts these actions")
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn every_task_and_every_example_world_replays() {
     let mut names = Vec::new();
     for variant in &*ALL_VARIANTS {
         let task = variant.task().name().to_owned();
-        // The first variant of each, or the first two: the property test below draws others.
+        // Only the first one or two variants of each task; the property test below draws others.
         if names.iter().filter(|name| **name == task).count() >= crate::tier::quick_or_full(1, 2) {
             continue;
         }
@@ -150,7 +150,7 @@ static THREE: LazyLock<Vec<Recording>> = LazyLock::new(|| {
     let variant = tasks::variant("find_objects#red").expect("it is built in");
     let episode = |number| {
         let world = Sampler::new(&variant, number).world(0).expect("it can be drawn");
-        live(&world, &mut RandomAgent::new(0), number, 4).1
+        run_recorded(&world, &mut RandomAgent::new(0), number, 4).1
     };
     (0..3).map(episode).collect()
 });
@@ -175,21 +175,21 @@ proptest! {
             2 => Some(ActionSpace::Normalized),
             _ => Some(ActionSpace::Discrete(vec![[5.0, 0.0, 0.0], [0.0, 90.0, 1.0], [3.3, -45.0, 0.0]])),
         };
-        let world = acted_in(world.expect("there is one"), actions, frame_skip, interact);
+        let world = with_actions(world.expect("it can be drawn"), actions, frame_skip, interact);
         check(&variant.id(), &world, &mut RandomAgent::new(0), seed ^ index, most);
     }
 
     /// Any changed byte is detected, with its line; episodes on other lines can still be read. A truncated text gives the
     /// episodes before the cut.
     #[test]
-    fn damage_is_located_and_other_episodes_are_readable(place in any::<Index>(), flip in 1u8..128) {
+    fn damage_is_located_and_other_episodes_are_readable(offset in any::<Index>(), flip in 1u8..128) {
         let recordings: &[Recording] = &THREE;
         let text = written(recordings);
-        let place = place.index(text.len());
-        let line = 1 + text[..place].matches('\n').count() as u64;
+        let offset = offset.index(text.len());
+        let line = 1 + text[..offset].matches('\n').count() as u64;
 
         let mut bytes = text.clone().into_bytes();
-        bytes[place] ^= flip;
+        bytes[offset] ^= flip;
         let read_all = |bytes: &[u8]| {
             let mut reader = RecordingReader::new(bytes)?;
             let (mut found, mut errors) = (Vec::new(), Vec::new());
@@ -211,21 +211,21 @@ proptest! {
         match read_all(&bytes) {
             // Splitting or joining lines changes the numbers of later lines.
             Ok((found, errors)) => {
-                prop_assert!(!errors.is_empty() && found.len() < 3, "a change is noticed");
+                prop_assert!(!errors.is_empty() && found.len() < 3, "the change is not detected");
                 prop_assert_eq!(line_of(&errors[0]), line);
                 prop_assert!(found.iter().all(|recording| recordings.contains(recording)));
                 // Each episode has its own world, so a damaged line costs one episode, a damaged line break two.
-                let lost = if text.as_bytes()[place] == b'\n' { 2 } else { 1 };
-                prop_assert!(found.len() + lost >= 3, "{} are left", found.len());
+                let lost = if text.as_bytes()[offset] == b'\n' { 2 } else { 1 };
+                prop_assert!(found.len() + lost >= 3, "{} episodes are left", found.len());
             }
             Err(error) => prop_assert_eq!(line_of(&error), 1),
         }
 
-        let cut = &text.as_bytes()[..place];
+        let cut = &text.as_bytes()[..offset];
         if let Ok((found, errors)) = read_all(cut) {
-            let whole = cut.split(|byte| *byte == b'\n').count() - 1;
+            let num_lines = cut.split(|byte| *byte == b'\n').count() - 1;
             // A header, then a world and an episode each.
-            prop_assert_eq!(found.len(), whole.saturating_sub(1) / 2);
+            prop_assert_eq!(found.len(), num_lines.saturating_sub(1) / 2);
             prop_assert_eq!(&found[..], &recordings[..found.len()]);
             prop_assert_eq!(errors.len(), usize::from(cut.last() != Some(&b'\n')));
         } else {
@@ -255,13 +255,13 @@ fn external_changes_are_part_of_the_episode() {
         let action = agent.act(&environment);
         let step = environment.step(action).unwrap();
         recorder.step(action);
-        course.push(seen(&mut environment, step.reward, step.ended_by));
+        course.push(observed(&mut environment, step.reward, step.ended_by));
         assert!(!environment.ended(), "the episode is long enough");
     }
     let recording = recorder.recording(&environment, None);
     let back = read(&written(&[recording])).unwrap();
     assert_eq!(back[0].edits.len(), 2);
-    assert!(replayed(&back[0])[1..] == course[..], "what is seen or paid differs");
+    assert!(replayed(&back[0])[1..] == course[..], "observations or rewards differ");
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn divergent_replay_is_reported() {
     let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 5)
         .world(2)
         .unwrap();
-    let (_, recording) = live(&world, &mut OnRailsAgent::new(), 0, 4000);
+    let (_, recording) = run_recorded(&world, &mut OnRailsAgent::new(), 0, 4000);
     assert_eq!(recording.ended_by, Some(EndedBy::AllCollected));
     let outcome = |change: &dyn Fn(&mut Recording)| {
         let mut changed = recording.clone();
@@ -284,27 +284,27 @@ fn divergent_replay_is_reported() {
         }
     };
     assert_eq!(outcome(&|_| {}), Ok(()));
-    let told = |change: &dyn Fn(&mut Recording), words: &str| {
-        let error = outcome(change).expect_err("it differs");
+    let check_error = |change: &dyn Fn(&mut Recording), words: &str| {
+        let error = outcome(change).expect_err("the replay differs");
         assert!(error.contains(words), "{error}");
         assert!(error.contains("recorded by driftworld"), "{error}");
     };
-    told(&|recording| recording.reward += 1.0, "reward: found");
-    told(
+    check_error(&|recording| recording.reward += 1.0, "reward: found");
+    check_error(
         &|recording| recording.ended_by = Some(EndedBy::Zone),
         "ended_by: found all_collected, expected zone",
     );
-    told(
+    check_error(
         &|recording| recording.actions.push(Action::Continuous([0.0; 3])),
         "the episode has ended",
     );
-    told(
+    check_error(
         &|recording| {
             recording.actions.pop();
         },
         "found",
     );
-    told(
+    check_error(
         &|recording| {
             let moved = recording
                 .world

@@ -1,5 +1,5 @@
-//! The tables of `docs/tasks.md` and `docs/curricula.md` match the specs of the built-in tasks and the curricula in
-//! `examples/curricula/`. `DRIFTWORLD_UPDATE_GOLDEN=1` updates them.
+//! Tests that the tables of `docs/tasks.md` and `docs/curricula.md` match the built-in tasks and the curricula in
+//! `examples/curricula/`. `DRIFTWORLD_UPDATE_GOLDEN=1` updates the tables.
 
 use std::fmt::Write;
 
@@ -19,12 +19,12 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     let mut text = "| parameter | affects | values | default | |\n|---|---|---|---|---|\n".to_owned();
     for (name, parameter) in task.parameters() {
-        let said = parameter.description.as_deref().unwrap_or_default();
+        let description = parameter.description.as_deref().unwrap_or_default();
         let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
         let (values, default) = (values(parameter), default(parameter));
         let _ = writeln!(
             text,
-            "| `{name}` | {} | {values} | {default} | {said} |",
+            "| `{name}` | {} | {values} | {default} | {description} |",
             affects.join(" ")
         );
     }
@@ -37,8 +37,8 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     for variant in &variants {
         let changed = changed(&variants[0], variant);
         let elements = Element::WITH_FINE.into_iter().filter(|element| {
-            let touched = |(name, _): &(&String, String)| task.parameters()[*name].affects.contains(element);
-            changed.iter().any(touched)
+            let affects = |(name, _): &(&String, String)| task.parameters()[*name].affects.contains(element);
+            changed.iter().any(affects)
         });
         let elements: Vec<Element> = elements.collect();
         let turned = turned(&variants[0], variant, &elements);
@@ -47,14 +47,14 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
             .iter()
             .map(|(name, value)| format!("`{name}` {value}"))
             .collect();
-        let said = task.variant_description(variant.name()).unwrap_or_default();
+        let description = task.variant_description(variant.name()).unwrap_or_default();
         let (name, elements, values) = (variant.name(), elements.join(" "), values.join(", "));
-        let _ = writeln!(text, "| `{name}` | {elements} | {turned} | {values} | {said} |");
+        let _ = writeln!(text, "| `{name}` | {elements} | {turned} | {values} | {description} |");
     }
     text
 }
 
-/// Whether a variant that changes the reward also changes the optimum of the first, and the loss of the first's expert there.
+/// Whether a variant that changes the reward also changes the first variant's optimum, and the regret of the first's expert.
 fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
     if !elements.contains(&Element::R) {
         return String::new();
@@ -92,12 +92,12 @@ fn still() -> String {
         .flat_map(|name| tasks::variants(name).unwrap_or_else(|error| panic!("{error}")))
     {
         let (still, rails) = (earned(&variant, StillAgent), earned(&variant, OnRailsAgent::new()));
-        let said = match still {
+        let remark = match still {
             still if still >= rails => "standing still is best",
             still if still > 0.0 && still >= 0.9 * rails => "standing still is nearly best",
             _ => continue,
         };
-        let _ = writeln!(text, "| `{}` | {still:.1} | {rails:.1} | {said} |", variant.id());
+        let _ = writeln!(text, "| `{}` | {still:.1} | {rails:.1} | {remark} |", variant.id());
     }
     text
 }
@@ -202,9 +202,9 @@ fn curricula() -> String {
             format!("`{task}`: {}", variants.join(", "))
         };
         let learned: Vec<String> = tasks.into_iter().map(of).collect();
-        let (learned, count, said) = (learned.join("; "), scenario.num_experiences(), &scenario.description);
+        let (learned, count, description) = (learned.join("; "), scenario.num_experiences(), &scenario.description);
         let file = format!("[{name}.json](../examples/curricula/{name}.json)");
-        let _ = writeln!(text, "| {file} | {learned} | {count} | {said} |");
+        let _ = writeln!(text, "| {file} | {learned} | {count} | {description} |");
     }
     text
 }

@@ -1,4 +1,4 @@
-//! Laws of distances by parameters, for every pair of variants of every built-in task.
+//! Tests the laws of distances by parameters on every pair of variants of every built-in task.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ fn load(document: &Json) -> Arc<TaskSpec> {
     TaskSpec::from_json("retold", &document.to_string()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The values that a variant sets beside the defaults.
+/// The values that a variant sets for parameters with the role `variant`.
 fn set_by(variant: &Variant) -> Map<String, Json> {
     let parameters = variant.task().parameters();
     let is_set = |name: &str| parameters[name].role == Role::Variant;
@@ -51,11 +51,11 @@ fn every_pair_satisfies_the_laws_that_its_task_declares() {
         for (i, a) in all.iter().enumerate() {
             for (j, b) in all.iter().enumerate() {
                 assert_eq!(d[i][j], d[j][i], "{} and {}", a.id(), b.id());
-                let alike = a
+                let is_equal = a
                     .values()
                     .keys()
                     .all(|name| a.value_as_read(name) == b.value_as_read(name));
-                assert_eq!(d[i][j] == 0.0, alike, "{} and {}", a.id(), b.id());
+                assert_eq!(d[i][j] == 0.0, is_equal, "{} and {}", a.id(), b.id());
                 assert!(d[i][j] <= measure.diameter());
                 for k in 0..all.len() {
                     assert!(d[i][k] <= d[i][j] + d[j][k] + 1e-9);
@@ -76,8 +76,8 @@ fn distance_depends_on_the_pair_alone() {
             .rev()
             .map(|(name, one)| (name.clone(), one.clone()))
             .collect();
-        // All variants in reverse order under other names, mixed with others at the ends of the declared ranges.
-        let base = task.variant(DEFAULT_VARIANT).expect("defaults can be had");
+        // All variants in reverse order under other names, after further variants at the ends of the declared ranges.
+        let base = task.variant(DEFAULT_VARIANT).expect("there is a default variant");
         let mut variants = Map::new();
         for (name, parameter) in task.parameters() {
             let Some(Domain::Range(ends)) = parameter.domain() else {
@@ -103,8 +103,8 @@ fn distance_depends_on_the_pair_alone() {
         // In the quick tier every third variant.
         for a in all.iter().step_by(quick_or_full(3, 1)) {
             for b in &all {
-                let retold = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
-                let [here, there] = [first.between(a, b), second.between(&retold(a), &retold(b))];
+                let rewritten = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
+                let [here, there] = [first.between(a, b), second.between(&rewritten(a), &rewritten(b))];
                 let (here, there) = (here.expect("of one task"), there.expect("of one task"));
                 assert!(
                     are_close(&here, &there),
@@ -114,7 +114,7 @@ fn distance_depends_on_the_pair_alone() {
                 );
             }
         }
-        // And with no variants except the two.
+        // Also with no other variants.
         for pair in all.windows(2).step_by(quick_or_full(5, 1)) {
             let mut alone = document.clone();
             alone["variants"] = json!({ "b": set_by(&pair[1]), "a": set_by(&pair[0]) });
@@ -204,5 +204,5 @@ fn full_range_of_a_parameter_is_1_and_0_if_unread() {
             }
         }
     }
-    assert!(idle > 50, "{idle} parameters that nothing reads were moved");
+    assert!(idle > 50, "only {idle} unread parameters were moved");
 }

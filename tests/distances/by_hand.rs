@@ -1,16 +1,16 @@
-//! Computes the distance of two variants from the JSON of their task alone, by the table in `docs/similarity.md`, without using
-//! `similarity`.
+//! Computes the distance of two variants from the JSON of their task alone, by the table in `docs/similarity.md` and without the
+//! crate `similarity`.
 
 #![expect(
     clippy::disallowed_methods,
-    reason = "compared within a tolerance, and not by way of what is tested"
+    reason = "compared within a tolerance, and independent of the tested code"
 )]
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value as Json};
 
-use super::drawn_specs::{APART, Spec};
+use super::drawn_specs::{MIN_WIDTH, Spec};
 
 /// A distance: the total, and each element's.
 #[derive(Debug)]
@@ -22,31 +22,31 @@ pub(crate) struct ByHand {
 /// The distance of two variants of a random spec.
 pub(crate) fn distance(spec: &Spec, a: &str, b: &str) -> ByHand {
     let parameters = spec.0["parameters"].as_object().expect("it is an object");
-    let [a, b] = [a, b].map(|name| settled(parameters, &spec.set_by(name)));
+    let [a, b] = [a, b].map(|name| effective_values(parameters, &spec.set_by(name)));
     let mut found = ByHand {
         total: 0.0,
         elements: BTreeMap::new(),
     };
     for (name, parameter) in parameters {
-        let apart = match parameter["role"].as_str() {
+        let difference = match parameter["role"].as_str() {
             Some("variant") if !is_drawn_by(parameters, name) => of_values(parameter, &a[name], &b[name]),
             Some("randomized") => of_draws(parameters, &parameter["distribution"], &a, &b),
             _ => continue,
         };
-        let apart = apart * parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
+        let difference = difference * parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
         let weight = |element: &str| spec.0["element_weights"][element].as_f64().unwrap_or(1.0);
         let affects = parameter["affects"].as_array().expect("it is a list");
         let affects = affects.iter().map(|element| element.as_str().expect("it is a letter"));
-        found.total += apart * affects.clone().map(weight).fold(0.0, f64::max);
+        found.total += difference * affects.clone().map(weight).fold(0.0, f64::max);
         for element in affects {
-            *found.elements.entry(element.to_owned()).or_default() += apart;
+            *found.elements.entry(element.to_owned()).or_default() += difference;
         }
     }
     found
 }
 
-/// The value of each parameter: the one that a variant sets if it is read, else the default.
-fn settled(parameters: &Map<String, Json>, set: &Map<String, Json>) -> BTreeMap<String, Json> {
+/// The effective value of each parameter: the value that a variant sets, or the default if it sets none or is not read.
+fn effective_values(parameters: &Map<String, Json>, set: &Map<String, Json>) -> BTreeMap<String, Json> {
     let is_open = set.get("gate").is_none_or(|gate| gate == true);
     let value = |(name, parameter): (&String, &Json)| {
         let is_read = is_open || parameter["read_if"] != "gate";
@@ -56,7 +56,7 @@ fn settled(parameters: &Map<String, Json>, set: &Map<String, Json>) -> BTreeMap<
     parameters.iter().map(value).collect()
 }
 
-/// Whether a distribution of another parameter reads it.
+/// Whether the distribution of another parameter reads this parameter.
 fn is_drawn_by(parameters: &Map<String, Json>, name: &str) -> bool {
     let reference = serde_json::json!({ "param": name }).to_string();
     let mut distributions = parameters.values().map(|other| other["distribution"].to_string());
@@ -81,19 +81,19 @@ fn of_values(parameter: &Json, a: &Json, b: &Json) -> f64 {
     let range = || numbers(&parameter["range"]);
     let width = || range()[1] - range()[0];
     let choices = || parameter["choices"].as_array().expect("it is a list");
-    let over_choices = |apart: &dyn Fn(&Json, &Json) -> f64| {
+    let over_choices = |difference: &dyn Fn(&Json, &Json) -> f64| {
         let pairs = choices().iter().flat_map(|a| choices().iter().map(move |b| (a, b)));
-        apart(a, b) / pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max)
+        difference(a, b) / pairs.map(|(a, b)| difference(a, b)).fold(0.0, f64::max)
     };
     match (parameter["type"].as_str(), &parameter["compare"]) {
         (Some("string"), compare) if compare["costs"].is_array() => {
-            let place = |value: &Json| {
+            let index = |value: &Json| {
                 choices()
                     .iter()
                     .position(|choice| choice == value)
                     .expect("it is a choice")
             };
-            over_choices(&|a, b| number(&compare["costs"][place(a)][place(b)]))
+            over_choices(&|a, b| number(&compare["costs"][index(a)][index(b)]))
         }
         (_, compare) if compare["measure"] == "log_ratio" => {
             (number(a) / number(b)).ln().abs() / (range()[1] / range()[0]).ln()
@@ -132,10 +132,10 @@ fn of_draws(
     };
     let ends = |values: &BTreeMap<String, Json>| [number(&values[&low]), number(&values[&high])];
     let corners = || {
-        let all = range(&low)
+        let pairs = range(&low)
             .into_iter()
             .flat_map(|a| range(&high).into_iter().map(move |b| [a, b]));
-        all.filter(|[low, high]| low + APART <= *high).collect::<Vec<_>>()
+        pairs.filter(|[low, high]| low + MIN_WIDTH <= *high).collect::<Vec<_>>()
     };
     let pairs = corners()
         .into_iter()
@@ -143,8 +143,8 @@ fn of_draws(
     between_uniforms(ends(a), ends(b)) / pairs.map(|(a, b)| between_uniforms(a, b)).fold(0.0, f64::max)
 }
 
-/// Wasserstein-1 of two uniform distributions: the mean distance of their quantiles, which changes linearly from the distance
-/// of the low ends to that of the high ends.
+/// The Wasserstein-1 distance of two uniform distributions: the mean distance of their quantiles, which changes linearly from
+/// the distance of the low ends to the distance of the high ends.
 fn between_uniforms(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (from, to) = (a[0] - b[0], a[1] - b[1]);
     if from * to >= 0.0 {

@@ -1,5 +1,5 @@
-//! Random task specs: parameters of all roles and types with ranges, choices, weights, measures, conditions and distributions
-//! whose numbers are parameters, four variants, and a requirement.
+//! Generates random task specs: parameters of all roles and types with ranges, choices, weights, measures, conditions and
+//! parametric distributions, four variants, and requirements.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use serde_json::{Map, Value as Json, json};
 /// The variants of a random spec. The last extends the one before.
 pub(crate) const NAMES: [&str; 4] = ["v0", "v1", "v2", "v3"];
 
-/// Minimum distance between the two ends of a random uniform distribution, which a requirement ensures.
-pub(crate) const APART: f64 = 0.125;
+/// Minimum width of a random uniform distribution, which a requirement ensures.
+pub(crate) const MIN_WIDTH: f64 = 0.125;
 
 const COLORS: [[f64; 3]; 6] = [
     [0.0, 0.0, 0.0],
@@ -35,9 +35,9 @@ enum Kind {
     Boolean,
     Word,
     Costs,
-    /// Uniform, both ends parameters.
+    /// A uniform distribution, both ends of which are parameters.
     Uniform,
-    /// Normal, its mean a parameter.
+    /// A normal distribution with a parameter as its mean.
     Normal,
     /// A choice of three distributions.
     Distribution,
@@ -64,15 +64,15 @@ const KINDS: [Kind; 15] = [
     Kind::Drawn,
 ];
 
-/// The random input of a parameter.
+/// The random numbers from which a parameter is generated.
 #[derive(Clone, Debug)]
 struct Seeds {
     kind: Kind,
     low: f64,
     width: f64,
-    /// Positions of the default and each variant's value in the domain, from 0 to 1; two each.
+    /// Positions of the default and of each variant's value in the domain: two numbers each, from 0 to 1.
     at: [[f64; 2]; 5],
-    /// Which variants set it.
+    /// Which variants set the parameter.
     sets: [bool; 4],
     affects: Vec<&'static str>,
     weight: Option<f64>,
@@ -114,7 +114,7 @@ pub(crate) fn variants(task: &Arc<TaskSpec>) -> Vec<Variant> {
     NAMES.iter().map(variant).collect()
 }
 
-/// From 0 to 1. All numbers here have exact sums, so that the ends of ranges are reached.
+/// Numbers from 0 to 1. All numbers here have exact sums, so that the ends of ranges are reached.
 fn share() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 1 => Just(1.0), 4 => (0..=64).prop_map(|at| f64::from(at) / 64.0)]
 }
@@ -206,7 +206,7 @@ impl Parts {
         self.declare(name, parameter, seeds.sets, &values);
     }
 
-    /// Adds a parameter that no variant sets, and those that its distribution needs.
+    /// Adds a parameter that no variant sets, and the parameters that its distribution needs.
     fn add_drawn(&mut self, name: &str, seeds: &Seeds, mut common: Json) {
         let (low, width) = (seeds.low, seeds.width);
         let (first, second) = (format!("{name}_a"), format!("{name}_b"));
@@ -220,7 +220,7 @@ impl Parts {
             Kind::Uniform => {
                 let ends = seeds.at.map(|[a, b]| {
                     let a = low + 2.0 * width * a;
-                    (a, (low + width + 2.0 * width * b).max(a + 2.0 * APART))
+                    (a, (low + width + 2.0 * width * b).max(a + 2.0 * MIN_WIDTH))
                 });
                 let [(a, b), ..] = ends;
                 let [_, first_values @ ..] = ends.map(|(a, _)| json!(a));
@@ -228,7 +228,7 @@ impl Parts {
                 let ranges = [[low, low + 2.0 * width], [low + width, low + 3.0 * width]];
                 self.declare(&first, drawn_by(ranges[0], a), [true; 4], &first_values);
                 self.declare(&second, drawn_by(ranges[1], b), [true; 4], &second_values);
-                self.require.push(format!("{first} + {APART} <= {second}"));
+                self.require.push(format!("{first} + {MIN_WIDTH} <= {second}"));
                 json!({ "uniform": { "low": { "param": first }, "high": { "param": second } } })
             }
             Kind::Normal => {

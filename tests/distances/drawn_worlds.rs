@@ -1,10 +1,10 @@
-//! Random worlds, small but with everything that distances of worlds compare.
+//! Generates random worlds: small, but with everything that distances by worlds compare.
 
 use driftworld::spec::{Color, MotionModel, Object, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
 /// Maximum number of objects in a random world.
-pub(crate) const MOST_OBJECTS: usize = 6;
+pub(crate) const MAX_OBJECTS: usize = 6;
 
 /// A class that no random world contains.
 pub(crate) const OTHER_CLASS: &str = "lamp";
@@ -14,7 +14,7 @@ fn stimuli() -> impl Strategy<Value = Vec<Stimulus>> {
     prop::sample::subsequence(all, 0..=3)
 }
 
-fn place() -> impl Strategy<Value = [f64; 2]> {
+fn position() -> impl Strategy<Value = [f64; 2]> {
     prop::array::uniform2(-20.0..20.0_f64)
 }
 
@@ -28,9 +28,9 @@ pub(crate) fn objects() -> impl Strategy<Value = Object> {
     );
     let pays = (-100.0..100.0_f64, 0.0..=1.0_f64, stimuli(), stimuli(), 0.5..9.0_f64);
     let moves = (any::<bool>(), 0.5..5.0_f64, any::<bool>());
-    (place(), 0.0..360.0_f64, looks, pays, moves).prop_map(|(place, heading, looks, pays, moves)| {
+    (position(), 0.0..360.0_f64, looks, pays, moves).prop_map(|(position, heading, looks, pays, moves)| {
         let (class, color, scale, model) = looks;
-        let mut object = Object::new(class, place);
+        let mut object = Object::new(class, position);
         (object.heading, object.color, object.scale) = (heading, color.map(Color), scale);
         model.clone_into(&mut object.model.0);
         (object.reward, object.reward_probability) = (pays.0, pays.1);
@@ -47,7 +47,7 @@ pub(crate) fn objects() -> impl Strategy<Value = Object> {
 /// Random worlds.
 pub(crate) fn worlds() -> impl Strategy<Value = World> {
     let agent = (
-        place(),
+        position(),
         0.0..360.0_f64,
         1.0..20.0_f64,
         10.0..180.0_f64,
@@ -67,7 +67,7 @@ pub(crate) fn worlds() -> impl Strategy<Value = World> {
         size,
         prop::array::uniform3(0.0..=1.0_f64),
     );
-    (prop::collection::vec(objects(), 0..=MOST_OBJECTS), agent, rules, around).prop_map(
+    (prop::collection::vec(objects(), 0..=MAX_OBJECTS), agent, rules, around).prop_map(
         |(objects, agent, rules, around)| {
             let mut world = WorldDraft::with_objects(objects);
             let body = &mut world.agent_params;

@@ -1,4 +1,4 @@
-//! Bugs that an audit of distances by parameters found, each with the former answer.
+//! Regression tests for bugs in distances by parameters that an audit found. Each comment states the former, wrong result.
 
 use std::sync::Arc;
 
@@ -27,15 +27,15 @@ fn built_in(name: &str) -> Variant {
     tasks::variant(name).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn apart(a: &Variant, b: &Variant) -> f64 {
+fn distance(a: &Variant, b: &Variant) -> f64 {
     measure(a.task())
         .between(a, b)
         .unwrap_or_else(|error| panic!("{error}"))
         .total
 }
 
-/// A parameter that is the same in both and used nowhere changed 0.1194 into 0.0895, and four randomized parameters beside one
-/// whose sign changed turned an R of 1.0 into 0.2.
+/// An unused parameter with equal values changed 0.1194 into 0.0895. Four randomized parameters besides one with a reversed sign
+/// turned an R of 1.0 into 0.2.
 #[test]
 fn equal_parameters_do_not_dilute_the_distance() {
     let mut task = json!({ "name": "t", "parameters": {
@@ -52,7 +52,8 @@ fn equal_parameters_do_not_dilute_the_distance() {
     }
 }
 
-/// Two normal distributions with means 1 apart were 0.143 apart, and 0.001 as soon as a third variant had a mean of 1000.
+/// The distance of two normal distributions with means 0 and 1 was 0.143, and 0.001 as soon as a third variant had a mean of
+/// 1000.
 #[test]
 fn scale_depends_on_declarations_and_not_on_other_variants() {
     let mut task = json!({ "name": "t", "parameters": {
@@ -66,8 +67,8 @@ fn scale_depends_on_declarations_and_not_on_other_variants() {
     assert!((between(&load(&task), "a", "far").total - 1.0).abs() < 1e-12);
 }
 
-/// As above, depending on the defaults: if they break a requirement, the ends were those feasible for the document's first
-/// variant, so that the distance of a pair depended on which variant comes first.
+/// As above, if the defaults break a requirement: the feasible ends were then computed for the document's first variant, so that
+/// the distance of a pair depended on which variant comes first.
 #[test]
 fn scale_does_not_depend_on_the_first_variant_if_defaults_break_a_requirement() {
     let task = |variants: Json| {
@@ -90,8 +91,8 @@ fn scale_does_not_depend_on_the_first_variant_if_defaults_break_a_requirement() 
     assert!((drawn.normalised - 1.0 / 9.0).abs() < 1e-12, "{drawn:#?}");
 }
 
-/// As above, if a distribution depends on a number of a vector, or on a choice: these ends were ignored, so that 1 was a metre,
-/// or the width at the default.
+/// As above, if a distribution depends on a component of a vector, or on a choice: these ends were ignored, so that 1 was a
+/// metre, or the width at the default.
 #[test]
 fn scale_covers_everything_that_a_distribution_reads() {
     let uniform = |high: Json| json!({ "uniform": { "low": 0, "high": high } });
@@ -130,8 +131,8 @@ fn scale_does_not_depend_on_the_order_of_parameters() {
         }
         let mut parameters = serde_json::Map::new();
         for (index, name) in names.iter().enumerate() {
-            let place = ends.iter().position(|end| end == name).unwrap_or(index) as f64;
-            let range = [place * place - 3.0, place * place + 1.0 + place];
+            let rank = ends.iter().position(|end| end == name).unwrap_or(index) as f64;
+            let range = [rank * rank - 3.0, rank * rank + 1.0 + rank];
             let one =
                 json!({ "role": "variant", "type": "number", "affects": ["S"], "range": range, "default": range[0] });
             parameters.insert((*name).to_owned(), one);
@@ -150,8 +151,8 @@ fn scale_does_not_depend_on_the_order_of_parameters() {
     );
 }
 
-/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`, and nothing reads `reach` of objects that
-/// are triggered by contact; 15 of 125 answers for built-in variants were of this kind.
+/// `vary find_objects#blue --element T --distance 0.5` printed `reach 20, hold 10`, although nothing reads `reach` of objects
+/// that are triggered by contact. The same was wrong with 15 of 125 results for built-in variants.
 #[test]
 fn unread_parameters_make_no_distance() {
     let from = built_in("find_objects#blue");
@@ -172,7 +173,7 @@ fn unread_parameters_make_no_distance() {
             .iter()
             .map(|(name, value)| ((*name).to_owned(), Value::Number(*value)));
         let moved = base.with("moved", changes).unwrap_or_else(|error| panic!("{error}"));
-        apart(&base, &moved)
+        distance(&base, &moved)
     };
     assert_eq!(moved("find_objects#blue", &[("reach", 20.0)]), 0.0);
     assert!(moved("find_objects#near", &[("reach", 20.0)]) > 0.0);
@@ -213,20 +214,20 @@ fn declared_measure_of_a_placement_is_used_or_refused() {
     assert!(raw("wasserstein_1") < raw("wasserstein_2"));
     assert_eq!(raw("same_or_not"), 1.0);
     for name in ["total_variation", "hellinger", "jensen_shannon"] {
-        let said = TaskSpec::from_json("t", &text(name))
-            .expect_err("points are not compared so")
+        let error = TaskSpec::from_json("t", &text(name))
+            .expect_err("the measure does not suit points")
             .to_string();
         assert!(
-            said.contains("wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not"),
-            "{said}"
+            error.contains("wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not"),
+            "{error}"
         );
     }
 }
 
-/// Different distributions were 0 apart in a measure that claims to be a metric: points at least 1 m or 10 m apart, points in
-/// turn or at random, shares that are all or nothing or always alike.
+/// Some different distributions had distance 0 in a measure that claims to be a metric: points at least 1 m or 10 m apart, points
+/// in turn or at random, shares that are extreme or nearly equal.
 #[test]
-fn different_distributions_are_not_0_apart() {
+fn different_distributions_have_a_distance_above_0() {
     let poisson =
         |distance: f64| json!({ "poisson_disc": { "low": [-20, -20], "high": [20, 20], "distance": distance } });
     let points = |order: &str| json!({ "points": { "values": [[0, 0], [3, 4], [9, 9]], "order": order } });

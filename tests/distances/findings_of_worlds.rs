@@ -1,4 +1,4 @@
-//! Bugs that an audit of distances by worlds found, each with the former answer.
+//! Regression tests for bugs in distances by worlds that an audit found. Each comment states the former, wrong result.
 
 use driftworld::generator::Sampler;
 use driftworld::similarity::{Distance, Weights, world_distance, world_sets_distance};
@@ -28,8 +28,8 @@ fn drawn(name: &str, index: u64) -> World {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A full reversal of all pay gave an R of 0.048, because five other parts of the reward were 0; many smaller changes gave as
-/// much.
+/// A reversal of all rewards gave an R of only 0.048, because five other parts of the reward were 0. Many smaller changes gave
+/// as much.
 #[test]
 fn reversal_of_all_pay_is_not_diluted() {
     let pays = |sign: f64| {
@@ -46,8 +46,8 @@ fn reversal_of_all_pay_is_not_diluted() {
     assert_eq!(d(&a, &b).total, 6.0);
 }
 
-/// Red in the north that pays and blue in the south that costs, compared with the two swapped, gave 0 in every element, because
-/// positions, colours and rewards were compared separately.
+/// A rewarding red object in the north and a costly blue one in the south had distance 0 in every element from the same objects
+/// swapped, because positions, colours and rewards were compared separately.
 #[test]
 fn opposite_worlds_differ() {
     let worlds = |red: f64| {
@@ -58,14 +58,14 @@ fn opposite_worlds_differ() {
         })
     };
     let found = d(&worlds(10.0), &worlds(-10.0));
-    // Whichever are matched: two that are 20 m apart, or two that differ in colour and by 20 points.
+    // Matched objects are either 20 m apart, or differ in colour and by 20 points.
     assert!(found.total > 0.5, "{found:#?}");
     assert!(found.total >= 2.0 * 20.0 / 100.0);
 }
 
-/// The same objects in a different order in the file were up to 0.037 apart.
+/// Worlds with the same objects in a different order had a distance of up to 0.037.
 #[test]
-fn reordered_objects_are_0_apart() {
+fn reordered_objects_have_distance_0() {
     for (task, _) in tasks::BUILT_IN {
         for variant in tasks::variants(task).unwrap_or_else(|error| panic!("{error}")) {
             let sampler = Sampler::new(&variant, 3);
@@ -83,7 +83,7 @@ fn reordered_objects_are_0_apart() {
 
 /// As above, for walls and regions of the map, which were compared in listed order.
 #[test]
-fn reordered_walls_and_regions_are_0_apart() {
+fn reordered_walls_and_regions_have_distance_0() {
     let polygon = |x: f64| vec![[x, 10.0], [x + 2.0, 10.0], [x + 1.0, 14.0]];
     let listed = |xs: [f64; 3]| {
         world(|world| {
@@ -101,7 +101,7 @@ fn reordered_walls_and_regions_are_0_apart() {
     assert!(d(&listed([-20.0, 12.0, 20.0]), &listed([20.0, -20.0, 12.5])).total > 0.0);
 }
 
-/// Eight barrels that cost 100 each: R = 0, and the same for −50 or −5000; from a to b of the paper's Figure 4: R = 0.
+/// Adding eight barrels that cost 100 each gave R = 0, as did −50 or −5000. So did the step from a to b in the paper's Figure 4.
 #[test]
 fn added_costs_count() {
     let park = drawn("find_objects#blue", 0);
@@ -132,8 +132,8 @@ fn added_costs_count() {
     );
 }
 
-/// Magnitudes were compared as equal or not: speeds of 2 and 2.001 were as far apart as 2 and 20, fog of 60 and 59 m as 60 and
-/// 2, sizes of 1 and 1.0001 as 1 and 10; a map of 100 by 50 m equalled one of 50 by 100.
+/// Magnitudes were only compared for equality: speeds of 2 and 2.001 were as far apart as 2 and 20, fog at 60 and 59 m as at 60
+/// and 2 m, sizes of 1 and 1.0001 as 1 and 10. A map of 100 × 50 m equalled one of 50 × 100 m.
 #[test]
 fn magnitudes_are_graded() {
     let changes = [
@@ -146,12 +146,12 @@ fn magnitudes_are_graded() {
         ("/agent_params/field_of_view", [60.0, 61.0, 120.0]),
         ("/rules/order_penalty", [-1.0, -1.25, -60.0]),
     ];
-    let mut taken = cube("red", 5.0, [3.0, 3.0]);
-    taken.reward_stimulus = vec![Stimulus::AgentInRange];
+    let mut approached = cube("red", 5.0, [3.0, 3.0]);
+    approached.reward_stimulus = vec![Stimulus::AgentInRange];
     let mut mover = Object::new("ball", [0.0, 0.0]);
     mover.motion_model = MotionModel::RandomWaypoint;
     let plain: Value =
-        serde_json::to_value(world(|world| world.objects = vec![mover, taken])).expect("a world is JSON");
+        serde_json::to_value(world(|world| world.objects = vec![mover, approached])).expect("a world is JSON");
     for (name, values) in changes {
         let [base, near, far] = values.map(|value| {
             let mut json = plain.clone();
@@ -169,9 +169,9 @@ fn magnitudes_are_graded() {
     assert_eq!(d(&sized([100.0, 50.0]), &sized([50.0, 100.0])).total, 1.0);
 }
 
-/// A tree moved by 4 mm across a cell border counted as much as one moved to a different cell.
+/// Moving a tree by 4 mm across a cell border counted as much as moving it to another cell.
 #[test]
-fn places_have_no_borders() {
+fn positions_have_no_cell_borders() {
     let tree = |x: f64| world(|world| world.objects.push(Object::new("tree", [x, 1.0])));
     for x in [-2.0, -0.002, 0.0, 0.998, 1.998, 3.0] {
         let moved = |metres: f64| d(&tree(x), &tree(x + metres)).total;

@@ -1,4 +1,4 @@
-//! Laws of distances by parameters, for random specs.
+//! Tests the laws of distances by parameters on random specs.
 
 use driftworld::similarity::{Distance, VariantMeasure, Weights};
 use driftworld::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant};
@@ -13,13 +13,13 @@ pub(crate) fn measure(task: &Arc<TaskSpec>) -> VariantMeasure {
     VariantMeasure::new(task, Weights::of_task(task))
 }
 
-/// A distance's numbers, without parts that are 0, which depend on the list of parameters.
+/// The total of a distance and its value in each element, without the parts, which depend on the list of parameters.
 pub(crate) fn numbers(distance: &Distance) -> (f64, Vec<(Element, f64)>) {
     let elements = Element::ALL.map(|element| (element, distance.element(element).unwrap_or(0.0)));
     (distance.total, elements.to_vec())
 }
 
-/// Whether two distances are equal except for the order in which their parts were added.
+/// Whether two distances are equal except for rounding, which depends on the order in which their parts were added.
 pub(crate) fn are_close(a: &Distance, b: &Distance) -> bool {
     let ((a, mine), (b, theirs)) = (numbers(a), numbers(b));
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + a.abs());
@@ -42,9 +42,9 @@ fn ends(parameter: &Json) -> [Json; 2] {
     [end(0), end(1)]
 }
 
-/// The same task written differently: parameters in reverse order, other variants beside the two, at the ends of all declared
-/// ranges, and other names.
-fn retold(spec: &Spec, a: &str, b: &str) -> Spec {
+/// The same task written differently: with other names, its parameters in reverse order, and further variants at the ends of all
+/// declared ranges.
+fn rewritten(spec: &Spec, a: &str, b: &str) -> Spec {
     let parameters = spec.0["parameters"].as_object().expect("it is an object");
     let mut low = Map::new();
     let mut high = Map::new();
@@ -94,7 +94,7 @@ proptest! {
 
     #[test]
     fn distance_depends_on_the_pair_alone(spec in specs(), a in prop::sample::select(NAMES.to_vec()), b in prop::sample::select(NAMES.to_vec())) {
-        let (task, other) = (spec.task(), retold(&spec, a, b).task());
+        let (task, other) = (spec.task(), rewritten(&spec, a, b).task());
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).expect("it is declared");
         let first = measure(&task).between(&named(&task, a), &named(&task, b)).expect("they are of one task");
         let second = measure(&other).between(&named(&other, "first"), &named(&other, "second")).expect("they are of one task");
@@ -107,21 +107,21 @@ proptest! {
         let base = task.variant(DEFAULT_VARIANT).expect("the defaults keep the requirement");
         let measure = measure(&task);
         for (name, parameter) in spec.0["parameters"].as_object().expect("it is an object") {
-            let weighs = parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
-            let seen = |element: &Json| spec.0["element_weights"][element.as_str().expect("a letter")].as_f64().unwrap_or(1.0);
-            let seen = parameter["affects"].as_array().into_iter().flatten().map(seen).fold(0.0, f64::max);
+            let weight = parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
+            let element_weight = |element: &Json| spec.0["element_weights"][element.as_str().expect("a letter")].as_f64().unwrap_or(1.0);
+            let element_weight = parameter["affects"].as_array().into_iter().flatten().map(element_weight).fold(0.0, f64::max);
             let [low, high] = ends(parameter).map(|end| {
                 let value = serde_json::from_value(end).ok()?;
                 base.with("end", [(name.clone(), value)]).ok()
             });
             let (Some(low), Some(high)) = (low, high) else { continue };
-            let apart = measure.between(&low, &high).expect("they are of one task").total;
-            let narrow = parameter["type"] == "heading"
+            let distance = measure.between(&low, &high).expect("they are of one task").total;
+            let is_beyond_a_half_turn = parameter["type"] == "heading"
                 && parameter["range"][1].as_f64().zip(parameter["range"][0].as_f64()).is_some_and(|(b, a)| b - a > 180.0);
             let is_one_of_many = parameter["choices"].as_array().is_some_and(|choices| choices.len() > 2);
             let drawn_by = name.ends_with("_a") || name.ends_with("_b");
-            if !(narrow || is_one_of_many || drawn_by) {
-                prop_assert!((apart - weighs * seen).abs() < 1e-12, "{name}: {apart} at a weight of {weighs} and {seen}");
+            if !(is_beyond_a_half_turn || is_one_of_many || drawn_by) {
+                prop_assert!((distance - weight * element_weight).abs() < 1e-12, "{name}: {distance} at a weight of {weight} and {element_weight}");
             }
         }
         for (a, b) in pairs(&variants(&task)) {
@@ -143,12 +143,12 @@ proptest! {
                 for end in ends(parameter) {
                     let value = serde_json::from_value(end).expect("it is a value");
                     let moved = variant.with("moved", [(name.clone(), value)]).expect("it is in its range");
-                    let apart = measure.between(&variant, &moved).expect("they are of one task").total;
+                    let distance = measure.between(&variant, &moved).expect("they are of one task").total;
                     if variant.reads(name) {
                         let is_same = moved.value(name) == variant.value(name);
-                        prop_assert!(is_same || apart > 0.0 || !measure.properties().is_metric(), "{name}");
+                        prop_assert!(is_same || distance > 0.0 || !measure.properties().is_metric(), "{name}");
                     } else {
-                        prop_assert_eq!(apart, 0.0, "{}", name);
+                        prop_assert_eq!(distance, 0.0, "{}", name);
                     }
                 }
             }
@@ -164,8 +164,8 @@ proptest! {
         for (a, b) in pairs(&all) {
             prop_assert_eq!(d(a, b).total, d(b, a).total);
             prop_assert_eq!(d(a, b).elements, d(b, a).elements);
-            let alike = a.values().keys().all(|name| a.value_as_read(name) == b.value_as_read(name));
-            if alike {
+            let is_equal = a.values().keys().all(|name| a.value_as_read(name) == b.value_as_read(name));
+            if is_equal {
                 prop_assert_eq!(d(a, b).total, 0.0);
             } else if laws.is_metric() {
                 prop_assert!(d(a, b).total > 0.0, "{:#?}", d(a, b));
@@ -226,9 +226,9 @@ proptest! {
             let (plain_measure, more_measure) = (measure(&plain), measure(&more));
             for (a, b) in [(0, 1), (1, 2), (0, 3)].map(|(a, b)| (&all_variants[a], &all_variants[b])) {
                 let with = |variant: &Variant| more.variant(variant.name()).expect("it is declared");
-                let apart = plain_measure.between(a, b).expect("they are of one task");
-                let still = more_measure.between(&with(a), &with(b)).expect("they are of one task");
-                prop_assert_eq!(numbers(&apart), numbers(&still));
+                let before = plain_measure.between(a, b).expect("they are of one task");
+                let after = more_measure.between(&with(a), &with(b)).expect("they are of one task");
+                prop_assert_eq!(numbers(&before), numbers(&after));
             }
         }
     }

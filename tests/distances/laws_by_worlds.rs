@@ -1,4 +1,4 @@
-//! Laws of distances by worlds: for random worlds, and for worlds of the built-in tasks.
+//! Tests the laws of distances by worlds on random worlds and on worlds of the built-in tasks.
 
 use std::sync::LazyLock;
 
@@ -15,7 +15,7 @@ static VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     tasks::BUILT_IN.iter().flat_map(of).collect()
 });
 
-/// Pairs of worlds of the built-in tasks: one of some variant, and one of its task's first variant under the same seed.
+/// Pairs of worlds of the built-in tasks: one of any variant, and one of its task's first variant under the same seed.
 fn built_in() -> impl Strategy<Value = (World, World)> {
     (0..VARIANTS.len(), 0..4_u64).prop_map(|(index, seed)| {
         let variant = &VARIANTS[index];
@@ -76,10 +76,10 @@ proptest! {
             OTHER_CLASS.clone_into(&mut object.class);
         }
         let more = |world: &World| with(world, |objects| objects.push(object.clone()));
-        let (apart, still) = (d(&a, &b), d(&more(&a), &more(&b)));
+        let (before, after) = (d(&a, &b), d(&more(&a), &more(&b)));
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + a);
-        // At equal costs, objects with equal pay are matched: a detour via the new object is not cheaper.
-        prop_assert!(near(apart.total, still.total), "{apart:#?} and {still:#?}");
+        // Among matchings of equal cost, objects with equal rewards are matched: a detour via the new object is not cheaper.
+        prop_assert!(near(before.total, after.total), "{before:#?} and {after:#?}");
     }
 
     #[test]
@@ -103,11 +103,11 @@ proptest! {
                 object.reward *= if flips(index) { -1.0 } else { 1.0 };
             }
         }));
-        let (all, some) = (signed(&|_| true), signed(&|index| signs[index % signs.len()]));
-        prop_assert!(reward(&some) <= reward(&all));
+        let (full, partial) = (signed(&|_| true), signed(&|index| signs[index % signs.len()]));
+        prop_assert!(reward(&partial) <= reward(&full));
         let pays: f64 = world.objects.iter().filter(|object| is_paid(object)).map(|object| object.reward.abs()).sum();
-        prop_assert!((reward(&all) - 2.0 * pays / 100.0).abs() < 1e-9);
-        prop_assert!(all.differs_in().iter().all(|element| *element == Element::R), "{all:#?}");
+        prop_assert!((reward(&full) - 2.0 * pays / 100.0).abs() < 1e-9);
+        prop_assert!(full.differs_in().iter().all(|element| *element == Element::R), "{full:#?}");
     }
 
     #[test]
@@ -152,8 +152,8 @@ proptest! {
             };
             let (base, small, large) = (moved(0.0), moved(near), moved(far));
             let (small, large) = (d(&base, &small).total, d(&base, &large).total);
-            let is_there = index != 7 || !world.objects.is_empty();
-            prop_assert!(!is_there || (0.0 < small && small < large), "change {index}: {small} and {large}");
+            let applies = index != 7 || !world.objects.is_empty();
+            prop_assert!(!applies || (0.0 < small && small < large), "change {index}: {small} and {large}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Distances of tasks with look-ups: by parameters they equal those of the cases, and dependence on a random draw still
+//! Tests distances by parameters of tasks with look-ups: they equal the distances of the cases, and dependence on a random draw
 //! counts.
 
 use driftworld::similarity::{Distance, VariantMeasure, Weights};
@@ -9,7 +9,7 @@ use serde_json::{Value as Json, json};
 use super::laws_by_parameters::numbers;
 
 /// The distance of `a` and `b` with these declarations of `pay` and `mode`.
-fn apart(mode: &Json, b: &Json, pay: &Json) -> Distance {
+fn distance(mode: &Json, b: &Json, pay: &Json) -> Distance {
     let text = json!({
         "version": 2, "name": "t",
         "parameters": {
@@ -48,8 +48,8 @@ proptest! {
         prop_assume!(near != far);
         let looked_up = json!({ "case": { "param": "mode" }, "of": { "near": near, "far": far } });
         let law = json!({ "role": "variant", "type": "distribution", "affects": ["T"], "choices": [near, far], "default": near });
-        let one = apart(&mode(), &json!("far"), &looked_up);
-        let other = apart(&law, &far, &json!({ "param": "mode" }));
+        let one = distance(&mode(), &json!("far"), &looked_up);
+        let other = distance(&law, &far, &json!({ "param": "mode" }));
         prop_assert_eq!(numbers(&one), numbers(&other));
         prop_assert_eq!(one.element(Element::T).unwrap_or(0.0), 0.0);
     }
@@ -63,17 +63,17 @@ proptest! {
             "far": { "case": { "param": "cue" }, "of": { "red": c }, "else": d } } });
         let list = |red, blue| json!({ "choice": { "values": [red, blue], "weights": [1, 3] } });
         let mixed = json!({ "case": { "param": "mode" }, "of": { "near": list(a, b), "far": list(c, d) } });
-        let [looked_up, mixed] = [looked_up, mixed].map(|pay| apart(&mode(), &json!("far"), &pay));
+        let [looked_up, mixed] = [looked_up, mixed].map(|pay| distance(&mode(), &json!("far"), &pay));
         let of = |distance: &Distance, element| distance.element(element).unwrap_or(0.0);
         prop_assert!((of(&looked_up, Element::R) - of(&mixed, Element::R)).abs() < 1e-12);
         prop_assert_eq!(of(&looked_up, Element::T), 1.0);
     }
 }
 
-/// The rewarding cue is reversed, while each cue pays equally often: the two still differ.
+/// The variants differ although only the cue that pays is reversed: each still pays equally often.
 #[test]
 fn dependence_on_a_draw_counts_by_its_parameter() {
     let either = |red, blue| json!({ "case": { "param": "cue" }, "of": { "red": red, "blue": blue } });
     let pay = json!({ "case": { "param": "mode" }, "of": { "near": either(1, -1), "far": either(-1, 1) } });
-    assert!(apart(&mode(), &json!("far"), &pay).total >= 1.0);
+    assert!(distance(&mode(), &json!("far"), &pay).total >= 1.0);
 }

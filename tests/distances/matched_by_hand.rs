@@ -8,10 +8,10 @@ use proptest::prelude::*;
 use super::by_hand::oklab;
 use super::drawn_worlds::worlds;
 
-/// Weight of pay in the matching: it only breaks ties.
+/// Weight of rewards in the cost of a matching, small enough to only break ties.
 const TIE_BREAK: f64 = 1e-9;
 
-/// The difference of two numbers over the larger one.
+/// The difference of two numbers, divided by the larger one.
 fn relative(a: f64, b: f64) -> f64 {
     let larger = a.abs().max(b.abs());
     if larger == 0.0 { 0.0 } else { (a - b).abs() / larger }
@@ -35,13 +35,13 @@ fn color(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// How many words have to be changed, added or removed to turn one set into the other.
+/// The number of words to change, add or remove to turn one set into the other.
 fn words(a: &[Stimulus], b: &[Stimulus]) -> f64 {
     let lacking = |a: &[Stimulus], b: &[Stimulus]| a.iter().filter(|one| !b.contains(one)).count();
     lacking(a, b).max(lacking(b, a)) as f64
 }
 
-/// A key that matters in only one of the two counts 1.
+/// The difference of two keys: 1 if only one of them is read.
 fn read(a: Option<f64>, b: Option<f64>) -> f64 {
     a.zip(b).map_or_else(|| word(&a, &b), |(a, b)| relative(a, b))
 }
@@ -54,8 +54,8 @@ fn reward(object: &Object) -> f64 {
     if is_paid(object) { object.reward } else { 0.0 }
 }
 
-/// The difference of two matched objects in everything except pay, and in pay.
-fn apart(a: &Object, b: &Object) -> (f64, f64) {
+/// The difference of two matched objects in everything except rewards, and in rewards.
+fn difference(a: &Object, b: &Object) -> (f64, f64) {
     let reach = |object: &Object| {
         let is_read = [&object.reward_stimulus, &object.destroy_stimulus]
             .iter()
@@ -82,7 +82,7 @@ fn apart(a: &Object, b: &Object) -> (f64, f64) {
         (None, None) => 0.0,
         _ => 1.0,
     };
-    let all = metres(a.coordinates, b.coordinates) / 10.0
+    let total = metres(a.coordinates, b.coordinates) / 10.0
         + turn(a.heading, b.heading) / 180.0
         + word(&a.motion_model, &b.motion_model)
         + relative(speed(a), speed(b))
@@ -93,23 +93,23 @@ fn apart(a: &Object, b: &Object) -> (f64, f64) {
         + colors
         + word(&a.model.0, &b.model.0)
         + relative(a.scale, b.scale);
-    (all, (reward(a) - reward(b)).abs() / 100.0 + (odds(a) - odds(b)).abs())
+    (total, (reward(a) - reward(b)).abs() / 100.0 + (odds(a) - odds(b)).abs())
 }
 
-/// The cheapest matching of a set of objects with a larger set: the cost that selects it, and its total contribution.
+/// The cheapest matching of a set of objects with a larger set: the cost by which it is selected, and its share of the distance.
 fn matched(fewer: &[&Object], more: &[&Object]) -> (f64, f64) {
     let Some((first, rest)) = fewer.split_first() else {
         // Unmatched objects: presence, looks, reward.
         let left = more.iter().map(|object| 2.0 + reward(object).abs() / 100.0);
         return (0.0, left.sum());
     };
-    let ways = (0..more.len()).map(|at| {
+    let matchings = (0..more.len()).map(|at| {
         let mut left = more.to_vec();
-        let (all, pays) = apart(first, left.remove(at));
+        let (other, pays) = difference(first, left.remove(at));
         let (cost, counts) = matched(rest, &left);
-        (cost + all + TIE_BREAK * pays.min(1.0), counts + all + pays)
+        (cost + other + TIE_BREAK * pays.min(1.0), counts + other + pays)
     });
-    ways.fold(
+    matchings.fold(
         (f64::INFINITY, 0.0),
         |best, next| if next.0 < best.0 { next } else { best },
     )
@@ -158,10 +158,10 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 256), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn distance_is_that_of_the_cheapest_matching(a in worlds(), b in worlds()) {
+    fn distance_matches_the_cheapest_matching(a in worlds(), b in worlds()) {
         let found = world_distance(&a, &b, &Weights::default());
         let expected = by_hand(&a, &b);
-        // A limit is compared to the microsecond.
+        // Limits are compared with a resolution of a microsecond.
         prop_assert!((found.total - expected).abs() < 1e-6, "{expected} by hand, {found:#?}");
     }
 }

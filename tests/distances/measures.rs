@@ -1,4 +1,4 @@
-//! A measure that a task declares for a parameter is used, or refused on loading with a list of suitable ones.
+//! Tests that a measure declared for a parameter is used, or refused on loading with a list of suitable measures.
 
 use driftworld::similarity::VariantMeasure;
 use driftworld::similarity::Weights;
@@ -10,11 +10,11 @@ fn names() -> Vec<String> {
     let path = format!("{}/schemas/task.schema.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let schema: Json = serde_json::from_str(&text).expect("it is JSON");
-    let all = schema["$defs"]["MeasureName"]["oneOf"]
+    let listed = schema["$defs"]["MeasureName"]["oneOf"]
         .as_array()
         .cloned()
         .expect("it is a list");
-    let names: Vec<String> = all
+    let names: Vec<String> = listed
         .iter()
         .filter_map(|one| one["const"].as_str().map(str::to_owned))
         .collect();
@@ -22,7 +22,7 @@ fn names() -> Vec<String> {
     names
 }
 
-/// A parameter of every type and of every kind of distribution, each with a different value of it.
+/// A parameter of every type and of every kind of distribution, each with a description and a second value.
 fn parameters() -> Vec<(&'static str, Json, Json)> {
     let variant = |kind: &str, domain: [&str; 1], values: Json, default: Json| {
         let mut one = json!({ "role": "variant", "type": kind, "affects": ["O"], "default": default });
@@ -32,7 +32,7 @@ fn parameters() -> Vec<(&'static str, Json, Json)> {
     let choices = |kind: &str, a: Json, b: Json| (variant(kind, ["choices"], json!([a, b]), a.clone()), b);
     let range = |kind: &str, a: Json, b: Json| (variant(kind, ["range"], json!([1, 90]), a), b);
     let drawn = |a: Json, b: Json| choices("distribution", a, b);
-    let mut all = vec![
+    let mut cases = vec![
         ("number", range("number", json!(1), json!(9))),
         ("integer", range("integer", json!(1), json!(9))),
         ("heading", range("heading", json!(1), json!(9))),
@@ -52,7 +52,7 @@ fn parameters() -> Vec<(&'static str, Json, Json)> {
     let words = |weight: f64| json!({ "choice": { "values": ["a", "b"], "weights": [1, weight] } });
     let shares = |alpha: f64| json!({ "dirichlet": { "alpha": [1, alpha] } });
     let headings = |mean: f64| json!({ "von_mises": { "mean": mean, "kappa": 2 } });
-    all.extend([
+    cases.extend([
         ("drawn numbers", drawn(normal(1.0), normal(2.0))),
         ("drawn points", drawn(disc(3.0), disc(9.0))),
         ("drawn colours", drawn(color("red"), color("blue"))),
@@ -60,7 +60,8 @@ fn parameters() -> Vec<(&'static str, Json, Json)> {
         ("drawn shares", drawn(shares(1.0), shares(4.0))),
         ("drawn headings", drawn(headings(1.0), headings(60.0))),
     ]);
-    all.into_iter()
+    cases
+        .into_iter()
         .map(|(of, (parameter, other))| (of, parameter, other))
         .collect()
 }
@@ -76,12 +77,12 @@ fn declared_measure_is_used_or_refused_with_suitable_ones() {
             let task = match TaskSpec::from_json("t", &text.to_string()) {
                 Ok(task) => task,
                 Err(error) => {
-                    let said = error.to_string();
+                    let error_text = error.to_string();
                     assert!(
-                        said.contains("/parameters/p/compare/measure") && said.contains(&name),
-                        "{of}: {said}"
+                        error_text.contains("/parameters/p/compare/measure") && error_text.contains(&name),
+                        "{of}: {error_text}"
                     );
-                    assert!(said.contains("expected"), "{of}: {said}");
+                    assert!(error_text.contains("expected"), "{of}: {error_text}");
                     continue;
                 }
             };

@@ -1,4 +1,4 @@
-//! Laws of distances (`docs/similarity.md`), for the built-in tasks, random specs and random worlds; and the audit findings
+//! Tests the laws of distances (`docs/similarity.md`) on built-in tasks, random specs and random worlds, and the audit findings
 //! that led to them, one test each.
 
 mod built_in;

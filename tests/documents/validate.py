@@ -1,7 +1,7 @@
-"""Judges the documents beside this file by the committed JSON Schemas alone, with a validator that is not ours.
+"""Validates the documents beside this file against the committed JSON Schemas alone, with an independent validator.
 
 Every file in `bad/<kind>/` must be refused by `schemas/<kind>.schema.json`, every file in `good/<kind>/` accepted.
-Names the files judged otherwise and exits with 1. What the messages say is the business of `spec/tests/documents.rs`.
+Prints the files for which this is not so and exits with 1. `spec/tests/documents.rs` tests the messages.
 """
 
 import json
@@ -20,14 +20,14 @@ def read(path: Path) -> object:
 
 
 def validator(kind: str) -> Draft202012Validator:
-    """The validator of one kind of document, after its schema has itself been found to be one."""
+    """The validator of one kind of document. Fails if its schema is not a valid JSON Schema."""
     schema = read(DOCUMENTS.parents[1] / "schemas" / f"{kind}.schema.json")
     Draft202012Validator.check_schema(schema)
     return Draft202012Validator(schema)
 
 
 def judge(verdict: str, expect_valid: bool) -> tuple[int, list[str]]:
-    """How many files of a verdict are judged as expected, and a line for each of the others."""
+    """The number of files in the folder `verdict` that are judged as expected, and a line for each of the others."""
     agreed, surprises = 0, []
     for kind in KINDS:
         schema = validator(kind)
@@ -45,7 +45,7 @@ def judge(verdict: str, expect_valid: bool) -> tuple[int, list[str]]:
 
 
 def main() -> int:
-    """Judges everything, prints what is amiss and a closing line, and returns the exit status."""
+    """Validates all documents, prints the unexpected results and a summary, and returns the exit code."""
     refused, accepted_by_mistake = judge("bad", expect_valid=False)
     accepted, refused_by_mistake = judge("good", expect_valid=True)
     for surprise in accepted_by_mistake + refused_by_mistake:
