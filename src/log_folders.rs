@@ -10,12 +10,16 @@ use crate::contents::{Contents, OtherContents, has_info};
 use crate::documents;
 use crate::{Failure, argument};
 use driftworld_text::ShownPath;
+use serde_json::Value;
 
 /// Maximum depth of the search below a folder that is not a log itself.
 const MAX_LEVELS: usize = 4;
 
 /// Maximum number of logs in one search.
 const MOST_LOGS: usize = 10_000;
+
+/// Maximum size, in bytes, of a description that is read for names alone.
+const MAX_INFO_BYTES: u64 = 64 << 20;
 
 /// Maximum number of folders searched for logs.
 const MAX_FOLDERS: usize = 200_000;
@@ -36,6 +40,12 @@ pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<Pat
     } else {
         named(arguments)
     }
+}
+
+/// The description of a log's run; null if it cannot be read.
+pub(crate) fn scenario_info(log: &Path) -> Value {
+    let text = driftworld_files::text(&log.join("scenario_info.json"), MAX_INFO_BYTES).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
 }
 
 /// All logs in or below the arguments, in order and without duplicates; those below a folder are sorted by name.
@@ -149,7 +159,7 @@ fn check_folder(argument: &Path) -> Result<(), Failure> {
     )))
 }
 
-fn without_duplicates(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
+pub(crate) fn without_duplicates(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
     let mut seen = std::collections::BTreeSet::new();
     logs.retain(|log| seen.insert(log.canonicalize().unwrap_or_else(|_| log.clone())));
     logs

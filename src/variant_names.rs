@@ -7,8 +7,7 @@ use std::path::Path;
 use driftworld_curriculum::log_name_of_label;
 use serde_json::Value;
 
-/// Maximum size, in bytes, of an info file that is searched for names.
-const MAX_INFO_BYTES: u64 = 64 << 20;
+use crate::log_folders;
 
 /// The usual names of variants, by their names in logs.
 #[derive(Clone, Debug, Default)]
@@ -19,9 +18,7 @@ impl VariantNames {
     pub(crate) fn of_logs<P: AsRef<Path>>(folders: &[P]) -> Self {
         let mut names = BTreeMap::new();
         for folder in folders {
-            let file = folder.as_ref().join("scenario_info.json");
-            let text = driftworld_files::text(&file, MAX_INFO_BYTES).unwrap_or_default();
-            let info: Value = serde_json::from_str(&text).unwrap_or_default();
+            let info = log_folders::scenario_info(folder.as_ref());
             let variants = info.get("made_from").and_then(Value::as_object);
             for name in variants.into_iter().flat_map(|variants| variants.keys()) {
                 if name.contains('#') {

@@ -81,7 +81,7 @@ fn list(as_json: bool) -> Result<(), Failure> {
         let names = task.variant_names();
         [
             task.name().to_owned(),
-            task.description().to_owned(),
+            first_sentence(task.description()).to_owned(),
             first_of(&names, MAX_LISTED),
         ]
     });
@@ -92,6 +92,11 @@ fn list(as_json: bool) -> Result<(), Failure> {
     });
     output::line(format!("\n{}", table(["more", "tasks"], rows, &[])))?;
     output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
+}
+
+/// The text up to its first full stop; the whole text if there is none.
+fn first_sentence(text: &str) -> &str {
+    text.find(". ").map_or(text, |end| &text[..=end])
 }
 
 fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Failure> {

@@ -103,7 +103,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         return Err(ReportError::TooManyLifetimes { found, limit }.into());
     }
     request.studio.as_deref().map_or(Ok(()), failed::check_address)?;
-    let setup = Setup::new(logs, asked)?;
+    let setup = Setup::new(logs, asked, warn)?;
     let Setup {
         logs,
         options,

@@ -53,7 +53,7 @@ pub(crate) fn score_looking(
         options,
         experts,
         others,
-    } = Setup::new(request.folders()?, request)?;
+    } = Setup::new(request.folders()?, request, warn)?;
     let scored = each_log(&logs, &experts, &options, warn, |log| {
         look(&log)?;
         Ok((Makeup::of(&log.log), log.metrics))

@@ -1,13 +1,15 @@
 //! [`Setup`]: the scoring options and experts of a request. If lifetimes are compared, they get a common scale: each task's range
 //! over all of them.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use driftworld_metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
+use driftworld_text::one_line;
 use rayon::prelude::*;
 
 use super::{Experts, ScoringRequest};
-use crate::{Failure, log_folders};
+use crate::{Failure, Warn, argument, log_folders};
 
 /// Scoring options, with the logs to compare with.
 pub(crate) struct Setup {
@@ -19,13 +21,28 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    /// Prepares a request. If two agents are compared, or on request, all lifetimes have the same scale.
-    pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
+    /// Prepares a request. If two agents are compared, or on request, all lifetimes have the same scale. `warn` receives a warning
+    /// for each side of a comparison that has logs of several agents.
+    pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest, warn: Warn<'_>) -> Result<Self, Failure> {
         let (settings, mut options) = (&request.settings, request.settings.options()?);
         let experts = Experts::new(&settings.experts, settings.expert_store.as_deref())?;
         let others = log_folders::below(&request.against)?;
+        let both = [logs.as_slice(), &others].concat();
+        if log_folders::without_duplicates(both.clone()).len() < both.len() {
+            return Err(Failure::in_argument(
+                "against",
+                "found a log of the first agent, expected logs of another agent",
+            ));
+        }
         if request.intervals.common_ranges || !others.is_empty() {
-            options = with_common_ranges(&[logs.as_slice(), &others].concat(), &experts, options);
+            options = with_common_ranges(&both, &experts, options);
+        }
+        let sides = [
+            ("the first agent's logs".to_owned(), &logs),
+            (argument("against"), &others),
+        ];
+        for (side, logs) in sides.into_iter().filter(|_| !others.is_empty()) {
+            several_agents(&side, logs).into_iter().for_each(warn);
         }
         Ok(Self {
             logs,
@@ -34,6 +51,19 @@ impl Setup {
             others,
         })
     }
+}
+
+/// A warning that these lifetimes, which are scored as one agent's, are those of several.
+fn several_agents(side: &str, logs: &[PathBuf]) -> Option<String> {
+    let agent = |log: &PathBuf| Some(log_folders::scenario_info(log).get("agent")?.as_str()?.to_owned());
+    let agents: BTreeSet<String> = logs.iter().filter_map(agent).collect();
+    (agents.len() > 1).then(|| {
+        let names = agents.into_iter().collect::<Vec<_>>().join(", ");
+        format!(
+            "{side}: found several agents, {}; they are scored as one",
+            one_line(names)
+        )
+    })
 }
 
 /// Sets each task's range to its range over all these logs, so that levels of different lifetimes are comparable.

@@ -108,6 +108,15 @@ impl ScenarioInfo {
         has_budgets && (regime_ends || block.get("mix").is_some())
     }
 
+    /// Number of experiences of our own scenario, if a log that ends in this block after `done` of them is unfinished.
+    pub(super) fn missing_end(&self, last_block: u64, done: u64) -> Option<u64> {
+        let blocks = self.extra.get("scenario")?["blocks"].as_array()?;
+        let regimes = blocks.iter().filter_map(|block| block["regimes"].as_array()).flatten();
+        let planned = regimes.filter_map(|regime| regime["count"].as_u64()).sum();
+        let is_last = last_block + 1 >= blocks.len() as u64;
+        (done < planned && !(is_last && self.leaves_numbers_unused(last_block, true))).then_some(planned)
+    }
+
     /// Warns about each of the three fields that is missing.
     pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
         let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {

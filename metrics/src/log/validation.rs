@@ -296,8 +296,8 @@ impl Check {
         Ok(())
     }
 
-    /// Checks that experience numbers increase by one, over all workers. Gaps cause one warning per log, except where a regime with
-    /// a budget of decisions may leave numbers unused.
+    /// Checks that experience numbers increase by one, over all workers, up to the end of our own scenario. Gaps cause one warning
+    /// per log, except where a regime with a budget of decisions may leave numbers unused.
     fn missing(&mut self, table: &Table<'_>, scenario: &ScenarioInfo) {
         let numbers = table.rows.exp_nums();
         let (blocks, tasks) = (table.rows.block_nums(), table.rows.task_names().ids());
@@ -321,6 +321,12 @@ impl Check {
                 after,
                 missing,
             });
+        }
+        if let Some(&last) = rows.last() {
+            let (block, done) = (blocks[last as usize], numbers[last as usize] + 1);
+            if let Some(planned) = scenario.missing_end(block, done) {
+                self.warnings.add(LogWarning::EndsEarly { done, planned });
+            }
         }
     }
 

@@ -67,6 +67,14 @@ pub enum LogWarning {
         /// Number of the experience.
         exp_num: u64,
     },
+    /// The log of one of our own scenarios ends before it: the run was stopped, or is still running.
+    #[error("the log ends after {done} of the {planned} experiences of its scenario; scored as far as it goes")]
+    EndsEarly {
+        /// The number of its last experience, plus one.
+        done: u64,
+        /// Number of experiences of the scenario.
+        planned: u64,
+    },
     /// Experience numbers are missing; rows may have been lost.
     #[error("{at}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", before + 1)]
     Missing {

@@ -151,6 +151,14 @@ impl Serialize for LifetimeMetrics {
     }
 }
 
+impl LifetimeMetrics {
+    /// Whether tasks were evaluated after learning and none has gained: then its maintenance and transfer say nothing.
+    pub fn nothing_was_learned(&self) -> bool {
+        let gains: Vec<bool> = self.reached.values().filter_map(Reached::has_gained).collect();
+        !gains.is_empty() && !gains.contains(&true)
+    }
+}
+
 /// One row of the table of a lifetime.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SummaryRow {

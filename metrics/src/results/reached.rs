@@ -14,6 +14,9 @@ use crate::{Anchors, BlockType, Log, NormalizationMethod, Options, Unlabelled};
 /// Share of the expert's level below which a task counts as never learned.
 pub const LEARNED_SHARE: f64 = 0.2;
 
+/// Number of standard errors by which an evaluation after learning must exceed the first one to count as a gain.
+const MIN_STANDARD_ERRORS: f64 = 2.0;
+
 /// One evaluation of one task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationCell {
@@ -111,6 +114,17 @@ impl Reached {
     /// Whether every evaluation after learning is below [`LEARNED_SHARE`] of the expert's level; `None` if unknown.
     pub fn is_never_learned(&self) -> Option<bool> {
         self.share.map(|share| share < LEARNED_SHARE)
+    }
+
+    /// Whether the task is better after learning than in its first evaluation: if its expert's level is known, whether it was
+    /// learned, else whether the two evaluations differ by two standard errors. `None` if it was not evaluated after learning.
+    pub fn has_gained(&self) -> Option<bool> {
+        let (first, best) = (self.evaluations.first()?, self.best()?);
+        if let Some(is_never_learned) = self.is_never_learned() {
+            return Some(!is_never_learned);
+        }
+        let [before, after] = [first, best].map(|cell| cell.standard_error.unwrap_or(0.0));
+        Some(best.mean - first.mean > MIN_STANDARD_ERRORS * (before * before + after * after).sqrt())
     }
 }
 

@@ -9,22 +9,17 @@ use super::number;
 use super::verdict::{Verdict, pill};
 use crate::words::shown;
 
-/// Number of standard errors by which an evaluation after learning must exceed the first one to count as a gain.
-const MIN_STANDARD_ERRORS: f64 = 2.0;
-
 /// Maximum number of rows shown; the metrics files have all tasks.
 const MAX_ROWS: usize = 200;
 
 /// The section with this title. `display_names` maps a task's log name to its display name.
 pub(super) fn section(title: &str, metrics: &LifetimeMetrics, display_names: &BTreeMap<String, String>) -> Markup {
     let tasks = || metrics.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
-    let verdicts: Vec<Verdict> = tasks().filter_map(|(_, task)| verdict(task)).collect();
-    let nothing_learned = !verdicts.is_empty() && verdicts.iter().all(|verdict| verdict.class != "good");
     let scaled = metrics.reached.values().any(Reached::is_scaled);
     html! {
         @if tasks().next().is_some() {
             h3 { (title) }
-            @if nothing_learned {
+            @if metrics.nothing_was_learned() {
                 ul.warnings aria-label="Nothing was learned" {
                     li { "⚠ Nothing was learned: no task is better after it was learned than before. What is said of its \
                           maintenance and transfer says nothing." }
@@ -100,10 +95,7 @@ fn amount(value: f64, is_scaled: bool) -> String {
 
 /// Whether a task was learned; `None` if it was not evaluated after learning.
 fn verdict(task: &Reached) -> Option<Verdict> {
-    let (first, best) = (task.evaluations.first()?, task.best()?);
-    let [before, after] = [first, best].map(|cell| cell.standard_error.unwrap_or(0.0));
-    let is_clear = best.mean - first.mean > MIN_STANDARD_ERRORS * (before * before + after * after).sqrt();
-    let (class, sign, word) = match (task.is_never_learned(), is_clear) {
+    let (class, sign, word) = match (task.is_never_learned(), task.has_gained()?) {
         (Some(true), _) => ("bad", "▼", "never learned"),
         (Some(false), _) => ("good", "▲", "learned"),
         (None, true) => ("good", "▲", "gained"),

@@ -60,6 +60,11 @@ fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
         metrics.push('\n');
         metrics.push_str(&what_bands_are(scores));
     }
+    if scores.nothing_was_learned() {
+        metrics.push_str(
+            "\nnote: nothing was learned: no task is better after it was learned than before, so that its maintenance and transfer say nothing",
+        );
+    }
     for note in scores.notes.iter().chain(&scores.cautions) {
         metrics.push_str("\nnote: ");
         metrics.push_str(&printable(note));
