@@ -282,6 +282,27 @@ def test_border_hooks_without_borders_are_refused(learners: Any) -> None:
 
 
 @needs_torch
+def test_misspelt_options_and_hooks_are_named(learners: Any) -> None:
+    with pytest.raises(TypeError, match=r"EWC: found an option strenght, expected some of .*did you mean strength\?"):
+        small("EWC", strenght=1.0)
+    with pytest.warns(UserWarning, match=r"Own: found a method end_tasks, .*did you mean end_task\?"):
+        type("Own", (learners.PPO,), {"end_tasks": lambda self, label: None, "distil": lambda self: None})
+
+
+@needs_torch
+def test_method_that_keeps_something_unsaved_warns(learners: Any, tmp_path: Path) -> None:
+    class Keeping(learners.EWC):  # type: ignore[misc, name-defined]
+        def __init__(self, *arguments: Any, weights: list[float], **options: Any) -> None:
+            super().__init__(*arguments, **options)
+            self.weights, self.old = weights, [weights]
+
+    small("EWC").save(tmp_path / "silent")
+    with pytest.warns(UserWarning, match="keeping: found old, but no method_state"):
+        small(Keeping, weights=[1.0]).save(tmp_path / "warns")
+    type("Saving", (Keeping,), {"method_state": lambda self: {"old": self.old}})(5, 4, size=8, weights=[1.0]).save(tmp_path / "saves")
+
+
+@needs_torch
 def test_method_is_named_and_noted_after_its_class(learners: Any, tmp_path: Path) -> None:
     class OwnMethod(learners.PPO):  # type: ignore[misc, name-defined]
         pull = 1.0

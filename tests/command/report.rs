@@ -148,17 +148,22 @@ fn drift_is_measured_at_both_ends() {
 fn several_lifetimes_have_intervals_and_steps_on_request() {
     let folder = scratch();
     run_lifetime(folder.path());
-    succeed_in(folder.path(), "run scenario.json --agent random --output more/second");
+    for output in ["more/second", "theirs/third"] {
+        succeed_in(
+            folder.path(),
+            &format!("run scenario.json --agent random --output {output}"),
+        );
+    }
     let stdout = succeed_in(
         folder.path(),
-        "report log more -u steps --against more --title All -T lb timeline",
+        "report log more -u steps --against theirs --title All -T lb timeline",
     );
     assert!(stdout.starts_with("wrote report.html (2 lifetimes, "), "{stdout}");
     let page = read(folder.path().join("report.html"));
     for part in [
         "<h1>All</h1>",
         "Over all lifetimes",
-        "against more",
+        "against theirs",
         "step\n</text>",
         "#life-2",
     ] {

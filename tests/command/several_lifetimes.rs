@@ -5,7 +5,7 @@ use std::path::Path;
 use driftworld::metrics::BlockType;
 
 use super::null_bands::{parsed, write};
-use super::terminal::{Says, scratch, succeed_in};
+use super::terminal::{Says, fail_in, scratch, succeed_in};
 
 const SCALES: &str =
     r#"{"scales": {"find_red": {"floor": 0, "ceiling": 100}, "find_held": {"floor": 0, "ceiling": 100}}}"#;
@@ -109,6 +109,23 @@ fn notes_of_two_agents_are_labelled() {
     let shown = succeed_in(folder.path(), &compare);
     shown.says("\nnote on the other agent: some performances are negative");
     assert!(!shown.contains("\nnote: some performances are negative"), "{shown}");
+}
+
+#[test]
+fn sides_of_a_comparison_are_one_agent_each_and_share_no_log() {
+    let folder = scratch();
+    for (number, agent) in ["ewc", "clear"].into_iter().enumerate() {
+        let mine = folder.path().join(format!("mine/{number}"));
+        live(&mine, 50.0);
+        std::fs::write(mine.join("scenario_info.json"), format!(r#"{{"agent": "{agent}"}}"#)).expect("a folder");
+        live(&folder.path().join(format!("theirs/{number}")), 30.0);
+    }
+    let shown = fail_in(folder.path(), 0, &["metrics", "-R", "mine", "--against", "theirs"]);
+    shown.says("warning: the first agent's logs: found several agents, clear, ewc; they are scored as one");
+    let shown = fail_in(folder.path(), 0, &["metrics", "-R", "theirs", "--against", "mine"]);
+    shown.says("warning: --against: found several agents, clear, ewc; they are scored as one");
+    let shown = fail_in(folder.path(), 2, &["metrics", "-R", "theirs", "--against", "theirs/0"]);
+    shown.says("error: --against: found a log of the first agent, expected logs of another agent");
 }
 
 #[test]

@@ -164,6 +164,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn scenario_has_an_end_unless_a_budget_may_leave_numbers_unused() {
+        let with = |last: &str| {
+            let text = format!(
+                r#"{{"scenario": {{"blocks": [{{"regimes": [{{"count": 3}}, {{"count": 2}}]}}, {{"regimes": [{last}]}}]}}}}"#
+            );
+            ScenarioInfo {
+                extra: serde_json::from_str(&text).unwrap(),
+                ..ScenarioInfo::default()
+            }
+        };
+        let counted = with(r#"{"count": 4}"#);
+        assert_eq!(counted.missing_end(0, 5), Some(9));
+        assert_eq!(counted.missing_end(1, 8), Some(9));
+        assert_eq!(counted.missing_end(1, 9), None);
+        let budget = with(r#"{"count": 4, "steps": 100}"#);
+        assert_eq!(budget.missing_end(0, 5), Some(9));
+        assert_eq!(budget.missing_end(1, 6), None);
+        assert_eq!(ScenarioInfo::default().missing_end(0, 1), None);
+    }
+
+    #[test]
     fn unknown_words_warn_and_the_rest_is_kept() {
         let dir = tempfile::tempdir().unwrap();
         let text = r#"{"author": "me", "complexity": "1-LOW", "difficulty": "mild", "scenario_type": 3}"#;

@@ -122,6 +122,8 @@ class Options:
         kinds: tuple[str, ...] | None = None
         if modalities is not None:
             kinds = (modalities,) if isinstance(modalities, str) else tuple(modalities)
+        if isinstance(modalities, str) and "," in modalities:
+            raise ValueError(f"modalities: found {modalities!r}, expected a list: {[kind.strip() for kind in modalities.split(',')]!r}")
         if kinds is not None:
             for kind in kinds:
                 _one_of("modalities", kind, MODALITIES)

@@ -6,7 +6,9 @@ import hashlib
 import inspect
 import re
 import time
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -61,8 +63,12 @@ class Learner:
     made_with: dict[str, Any]
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Names a method after its class, unless it has a name."""
+        """Names a method after its class, unless it has a name, and warns about methods named almost like hooks."""
         super().__init_subclass__(**options)
+        inherited = [name for name in dir(cls.__mro__[1]) if name[0] != "_"]
+        for name in [name for name, each in vars(cls).items() if callable(each) and name[0] != "_" and name not in inherited]:
+            for similar in get_close_matches(name, inherited, 1, 0.85):
+                warnings.warn(f"{cls.__name__}: found a method {name}, which the learner does not call; did you mean {similar}?", stacklevel=2)
         if "name" not in vars(cls):
             cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
 
@@ -202,8 +208,24 @@ class Learner:
         self.load_method_state(state["method"])
 
     def save(self, path: Path) -> None:
-        """Writes :meth:`state_dict` to a file."""
+        """Writes :meth:`state_dict` to a file. Warns if the method keeps something that is not in it."""
+        if unsaved := self._unsaved():
+            warnings.warn(
+                f"{self.name}: found {', '.join(unsaved)}, but no method_state; a resumed run goes on without, and differs: return it from "
+                "method_state, and restore it in load_method_state",
+                stacklevel=2,
+            )
         torch.save(self.state_dict(), path)
+
+    def _unsaved(self) -> list[str]:
+        """Attributes of a method without ``method_state`` that hold something other than an argument."""
+        ours = [kind for kind in type(self).__mro__ if kind.__module__.startswith("driftworld.")]
+        if any("method_state" in vars(kind) for kind in type(self).__mro__ if kind not in ours):
+            return []
+        functions = (getattr(each, "__wrapped__", each) for kind in ours for each in vars(kind).values())
+        known = {name for each in functions if hasattr(each, "__code__") for name in each.__code__.co_names} | set(self.made_with)
+        kept = (list, dict, set, np.ndarray, np.random.Generator, torch.Tensor, torch.Generator, torch.optim.Optimizer, nn.Module)
+        return sorted(name for name, value in vars(self).items() if name not in known and isinstance(value, kept))
 
     def load(self, path: Path) -> None:
         """Loads a file written by :meth:`save`: tensors and plain values, no code."""
@@ -262,6 +284,11 @@ def _arguments(kind: type, arguments: tuple[Any, ...], options: dict[str, Any]) 
         for name, parameter in signature.parameters.items()
         if parameter.default is not parameter.empty
     }
+    known = {name for signature in own for name, each in signature.parameters.items() if each.kind is not each.VAR_KEYWORD}
+    # Other classes may take options of their own out of ``**options``.
+    for name in options.keys() - known if kind.__module__.startswith("driftworld.") else ():
+        similar = "".join(f"; did you mean {word}?" for word in get_close_matches(name, known, 1))
+        raise TypeError(f"{kind.__name__}: found an option {name}, expected some of {', '.join(sorted(known - {'self'}))}{similar}")
     given |= {**dict(zip(names, arguments, strict=False)), **options}
     for each in reversed(kind.__mro__):
         # A method's own constants, such as a strength.
