@@ -83,7 +83,7 @@ impl Film {
                 "reward": recording.reward, "ended_by": recording.ended_by.map(driftworld_env::EndedBy::word),
             }));
         }
-        output::line(summary(&recording))?;
+        output::line(format!("{} in {}", self.agent.name(), summary(&recording)))?;
         report_film(&self.output, &film)?;
         self.record
             .as_ref()
