@@ -44,7 +44,8 @@ pub use layout::{
     Rooms,
 };
 pub use limits::{
-    MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_OBJECTS, MAX_SCENARIO_VALUES, MAX_TASK_DEPTH, MAX_VALUES, MAX_WORLD_VALUES,
+    MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_OBJECTS, MAX_SCENARIO_VALUES, MAX_SEED, MAX_TASK_DEPTH, MAX_VALUES,
+    MAX_WORLD_VALUES,
 };
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb, srgb_from_linear};
@@ -65,7 +66,7 @@ pub use warning::Warning;
 pub use world::{
     ActionModel, ActionSpace, AgentParams, Compared, Comparison, Covering, Delivery, Disc, Door, Enclosure,
     EndCondition, Energy, EnvironmentParams, Field, FieldPlace, GameMode, ImageParams, LastEvent, LeafTexts, Looks,
-    MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable, Progress, Pushable,
+    MAX_POINTS, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable, Progress, Pushable,
     RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Style, Surface, Switch, SwitchAction,
     Trigger, Wall, World, WorldDraft, Zone, ZoneEnd,
 };

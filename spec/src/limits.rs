@@ -1,7 +1,10 @@
-//! Limits on the size of documents and on the number of objects in a world.
+//! Limits on the size of documents, on the number of objects in a world and on seeds.
 
 /// Maximum number of objects in one world.
 pub const MAX_OBJECTS: usize = 100_000;
+
+/// Largest seed of a world or an object, 2⁵³ − 1: the largest integer that every JSON reader represents exactly.
+pub const MAX_SEED: u64 = 9_007_199_254_740_991;
 
 /// Maximum size of a document in bytes.
 pub const MAX_BYTES: usize = 64 << 20;

@@ -1,6 +1,6 @@
 //! Maps every number of a distribution through a function; used to resolve references and to interpolate variants.
 
-use super::{ChannelSpread, Channels, Distribution, Spread};
+use super::{ChannelSpread, Channels, Distribution, Number, Spread};
 
 type Map<'a, N, M, E> = &'a mut dyn FnMut(&N) -> Result<M, E>;
 
@@ -87,6 +87,19 @@ impl<N> Distribution<N> {
                 weights: list(weights.as_ref(), f)?,
             }
         })
+    }
+}
+
+impl Distribution<Number> {
+    /// Its numbers in document order.
+    pub(crate) fn numbers(&self) -> Vec<Number> {
+        let mut numbers = Vec::new();
+        let collected: Result<Distribution, ()> = self.try_map(&mut |number| {
+            numbers.push(number.clone());
+            Ok(0.0)
+        });
+        drop(collected);
+        numbers
     }
 }
 

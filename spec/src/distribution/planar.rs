@@ -1,35 +1,9 @@
-//! Distributions of points: their spread and order, maps from random numbers to points, means and covariances.
+//! Distributions of points: maps from random numbers to points, means and covariances.
 
 use std::f64::consts::TAU;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::{Distribution, Moments};
+use super::{Distribution, Moments, Spread};
 use crate::value::Value;
-
-/// The standard deviation of a normal distribution in the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a number, or [x, y]")]
-#[schemars(rename = "Spread")]
-pub enum Spread<N = f64> {
-    /// The same along both axes.
-    Round(N),
-    /// Along x and along y.
-    Axes([N; 2]),
-}
-
-/// The order in which objects take the points of a list.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Order {
-    /// The first object takes the first point, and so on, starting over after the last; if a point is not free, the object
-    /// takes the next free one.
-    #[default]
-    Turn,
-    /// Each object takes a random point.
-    Random,
-}
 
 impl Moments<2> {
     fn round(mean: [f64; 2], variance: f64) -> Self {

@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Distribution;
 use super::case::Case;
 
 /// A number in a distribution: a literal, the value of a fixed or variant parameter, or one selected by the value of any
@@ -17,19 +16,6 @@ pub enum Number {
     Param(ParamRef),
     /// A number selected by the value of a parameter.
     Case(Box<Case<Number>>),
-}
-
-impl Distribution<Number> {
-    /// Its numbers in document order.
-    pub(crate) fn numbers(&self) -> Vec<Number> {
-        let mut numbers = Vec::new();
-        let collected: Result<Distribution, ()> = self.try_map(&mut |number| {
-            numbers.push(number.clone());
-            Ok(0.0)
-        });
-        drop(collected);
-        numbers
-    }
 }
 
 impl Number {

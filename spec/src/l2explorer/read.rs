@@ -72,7 +72,7 @@ impl World {
             // The regions are not in the file: they come from its map.
             if let (false, Some(Enclosure::OwnRegion { index })) = (has_regions, world.enclosure(object.coordinates)) {
                 let (map, count) = (world.environment_params.map(), world.environment_params.regions().len());
-                let name = maps.name(map).unwrap_or_else(|| maps::name(map));
+                let name = maps.layout(map).map_or_else(|| maps::name(map), |layout| &layout.name);
                 let region = format!("region {} of {count} of map {map} ({name})", index + 1);
                 text = text.replace(&format!("the region /environment_params/map_regions/{index}"), &region);
             }

@@ -1,7 +1,8 @@
 //! Checks a layout beyond its schema, and reports oddities.
 
+use super::kind::Kind;
 use super::walls::present;
-use super::{Kind, Layout, LayoutWall, MAX_CELLS, MAX_LAYOUT_SIDE, Plan};
+use super::{Layout, LayoutWall, MAX_CELLS, MAX_LAYOUT_SIDE, Plan};
 use crate::error::Problem;
 
 /// Pointer to a world's layout.

@@ -1,8 +1,9 @@
-//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] computed from it.
+//! [`Layout`]: rooms, mazes and walls of an arena, as documents write them. `kind.rs` computes the [`Plan`] of a layout.
 
 mod check;
 mod draws;
 mod grid;
+mod kind;
 mod maze;
 mod plan;
 mod rooms;
@@ -16,28 +17,17 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use maze::Maze;
 pub use plan::{Doorway, Plan, PlanCell, PlanWall};
-pub use rooms::{RoomDoors, Rooms};
-pub use text::Legend;
-pub use walls::{Circle, LayoutWall};
 
-use crate::maps;
-use crate::world::Region;
-use crate::world::fields::{Place, fields};
-use text::TextMap;
+use crate::Color;
+use crate::limits::MAX_SEED;
+use crate::world::fields::{Place, fields, word};
 
 /// Maximum number of cells in a layout, including wall cells.
 pub const MAX_CELLS: usize = 10_000;
 
 /// Maximum side of a layout in metres, the same as for an arena.
 pub const MAX_LAYOUT_SIDE: f64 = 300.0;
-
-/// Side of a predefined map in metres.
-const MAP_SIDE: f64 = 200.0;
-
-/// Default side of a cell of a text layout, in metres.
-const TEXT_CELL: f64 = 2.0;
 
 fields! {
     /// The walls that divide the arena: exactly one of a maze, rooms, a text, a predefined map, or a list of walls.
@@ -97,51 +87,7 @@ fields! {
     }
 }
 
-impl Place for BTreeMap<String, Legend> {}
-
-/// The kind of a layout.
-enum Kind<'a> {
-    Maze(&'a Maze),
-    Rooms(&'a Rooms),
-    Text(TextMap<'a>),
-    Predefined,
-    Walls(&'a [LayoutWall]),
-}
-
 impl Layout {
-    /// The kind: the first one present.
-    fn kind(&self) -> Option<Kind<'_>> {
-        if let Some(maze) = &self.maze {
-            return Some(Kind::Maze(maze));
-        }
-        if let Some(rooms) = &self.rooms {
-            return Some(Kind::Rooms(rooms));
-        }
-        if let Some(rows) = &self.text {
-            return Some(Kind::Text(TextMap {
-                rows,
-                legend: &self.legend,
-                cell: self.cell.unwrap_or(TEXT_CELL),
-                height: self.height,
-            }));
-        }
-        if self.predefined.is_some() {
-            return Some(Kind::Predefined);
-        }
-        self.walls.as_deref().map(Kind::Walls)
-    }
-
-    /// Side lengths of the arena in metres; `None` for a list of walls, where the world sets the arena size.
-    pub fn size(&self) -> Option<[f64; 2]> {
-        match self.kind()? {
-            Kind::Maze(maze) => Some(maze.size()),
-            Kind::Rooms(rooms) => Some(rooms.size()),
-            Kind::Text(text) => Some(text.size()),
-            Kind::Predefined => Some(self.size.unwrap_or([MAP_SIDE; 2])),
-            Kind::Walls(_) => None,
-        }
-    }
-
     /// Whether it is random and has no seed of its own.
     pub fn is_drawn(&self) -> bool {
         (self.maze.is_some() || self.rooms.is_some()) && self.seed().is_none()
@@ -164,59 +110,162 @@ impl Layout {
             .and_then(|maze| maze.seed)
             .or_else(|| self.rooms.as_ref().and_then(|rooms| rooms.seed))
     }
+}
 
-    /// The regions of a predefined map as walls, scaled to the arena; with `standing` below 1, only the first ones.
-    fn map_plan(&self, regions: &[Region]) -> Plan {
-        let size = self.size.unwrap_or([MAP_SIDE; 2]);
-        let factor = size.map(|side| side / MAP_SIDE);
-        let mut plan = Plan::of_cells(size, [0, 0], 0, |_, _| None);
-        let standing = &regions[..draws::share_of(self.standing, regions.len())];
-        plan.walls.extend(standing.iter().map(|corners| {
-            let corners = corners.0.iter();
-            PlanWall {
-                polygon: corners.map(|[x, y]| [x * factor[0], y * factor[1]]).collect(),
-                height: None,
-                color: None,
-            }
-        }));
-        plan
-    }
-
-    /// The meaning of a letter of its text; `None` for an unknown letter, and for a layout without text.
-    pub fn meaning(&self, letter: char) -> Option<Legend> {
-        match self.kind()? {
-            Kind::Text(text) => text.meaning(letter),
-            _ => None,
-        }
-    }
-
-    /// Computes the plan. `seed` is the world's, used if the layout has no seed of its own.
-    ///
-    /// The same layout and seed give the same plan, bit for bit, on every machine.
-    ///
-    /// # Example
-    /// ```
-    /// use driftworld_spec::{Layout, Maze};
-    /// let layout = Layout { maze: Some(Maze::default()), ..Layout::default() };
-    /// let plan = layout.plan(7);
-    /// assert_eq!(plan, layout.plan(7));
-    /// assert_eq!((plan.size, plan.cells.len()), ([24.0, 24.0], 64));
-    /// ```
-    pub fn plan(&self, seed: u64) -> Plan {
-        self.plan_with(seed, maps::excluded_regions(self.predefined.unwrap_or(0)))
-    }
-
-    /// Like [`Layout::plan`], with these regions replacing those of its predefined map.
-    pub(crate) fn plan_with(&self, seed: u64, regions: &[Region]) -> Plan {
-        let seed = self.seed().unwrap_or(seed);
-        match self.kind() {
-            Some(Kind::Maze(maze)) => maze.plan(self.standing, seed),
-            Some(Kind::Rooms(rooms)) => rooms.plan(self.standing, seed),
-            // A text is not random: its walls are always removed in the same order.
-            Some(Kind::Text(text)) => text.plan(self.standing, 0),
-            Some(Kind::Walls(walls)) => walls::plan(walls, self.standing, 0),
-            Some(Kind::Predefined) => self.map_plan(regions),
-            None => Plan::default(),
-        }
+fields! {
+    /// A maze of square cells, generated depth first: exactly one path connects any two cells.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "cells": [8, 8], "cell": 3, "braid": 0.2 }]))]
+    pub struct Maze {
+        /// Number of cells along x and y; at most 10,000 in total.
+        #[schemars(inner(range(min = 1, max = 1000)))]
+        pub cells: [u32; 2] = [8, 8] => Field::ours(AsPart),
+        /// Side of a cell in metres, from the middle of one wall to the middle of the next.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub cell: f64 = 3.0 => Field::ours(AsPart).unit("m"),
+        /// Thickness of the walls in metres; less than the side of a cell.
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub wall: f64 = 0.3 => Field::ours(AsPart).unit("m"),
+        /// Height of the walls in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// Share of the dead ends that are opened, 0..1: 0 leaves exactly one path between any two cells, 1 leaves no dead end.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub braid: f64 = 0.0 => Field::ours(AsPart),
+        /// Seed of the maze. If absent, the world's `seed` is used, or 0 if that is absent too; a sampled world has its own
+        /// seed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None => Field::ours(AsPart),
     }
 }
+
+fields! {
+    /// Rooms in rows and columns. A wall between two rooms has at most one doorway, at a random position; every room can be
+    /// reached from every other.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "grid": [2, 2], "room": [8, 8], "doorway": 1.5 }]))]
+    pub struct Rooms {
+        /// Number of rooms along x and y.
+        #[schemars(inner(range(min = 1, max = 100)))]
+        pub grid: [u32; 2] = [2, 2] => Field::ours(AsPart),
+        /// Sides of a room along x and y in metres, from the middle of one wall to the middle of the next.
+        #[schemars(inner(range(min = 0.1, max = 300.0)))]
+        pub room: [f64; 2] = [8.0, 8.0] => Field::ours(AsPart).unit("m"),
+        /// Width of the doorways in metres; together with a wall's thickness, at most the side of a room.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub doorway: f64 = 1.5 => Field::ours(AsPart).unit("m"),
+        /// Thickness of the walls in metres.
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub wall: f64 = 0.3 => Field::ours(AsPart).unit("m"),
+        /// Height of the walls in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// Share of the remaining walls between rooms that get a doorway too, 0..1: 0 leaves exactly one path between any two
+        /// rooms, 1 puts a doorway into every wall between two rooms.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub loops: f64 = 1.0 => Field::ours(AsPart),
+        /// Doors in the doorways. Sampling adds the doors and keys to the world as objects; in a world that is not sampled,
+        /// this key adds none.
+        pub doors: RoomDoors = RoomDoors::None => Field::ours(AsPart),
+        /// Seed of the rooms. If absent, the world's `seed` is used, or 0 if that is absent too; a sampled world has its own
+        /// seed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None => Field::ours(AsPart),
+    }
+}
+
+/// Doors in the doorways of rooms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RoomDoors {
+    /// No doors.
+    #[default]
+    None,
+    /// Open doors.
+    Open,
+    /// Closed doors, opened by interaction.
+    Closed,
+    /// Closed doors, each opened with the key of its colour, which lies in a free cell.
+    Keyed,
+}
+
+word!(RoomDoors);
+
+fields! {
+    /// One wall: a segment (`from` and `to`), a `circle`, or a `polygon`.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "from": [0, 0], "to": [5, 0], "thickness": 0.3, "height": 2 },
+        { "circle": { "center": [0, 0], "radius": 2 } },
+        { "polygon": [[0, 0], [2, 0], [1, 2]] },
+    ]))]
+    pub struct LayoutWall {
+        /// One end of a segment in metres.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub from: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
+        /// The other end of the segment in metres.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub to: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
+        /// Thickness of a segment in metres; 0.3 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub thickness: Option<f64> => Field::ours(AsPart).unit("m"),
+        /// A round wall; built as a polygon with 24 corners on the circle.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub circle: Option<Circle> => Field::ours(AsPart),
+        /// Corners in metres, in order; the last joins the first.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
+        pub polygon: Option<Vec<[f64; 2]>> => Field::ours(AsPart).unit("m"),
+        /// Height in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> => Field::ours(AsPart).unit("m"),
+        /// Colour; the arena's `bounding_wall_color` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> => Field::ours(AsPart),
+    }
+}
+
+fields! {
+    /// A circle on the ground.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "center": [0, 0], "radius": 2 }]))]
+    pub struct Circle {
+        /// Its centre in metres.
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
+        /// Its radius in metres.
+        #[schemars(range(min = 0.01, max = 300.0))]
+        pub radius: f64 => Field::ours(AsPart).unit("m"),
+    }
+}
+
+/// The meaning of a letter of a text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(extend("examples" = ["wall", "floor", { "group": "goal" }]))]
+pub enum Legend {
+    /// A wall that fills the cell.
+    Wall,
+    /// Empty floor.
+    Floor,
+    /// Floor on which the agent may start.
+    Start,
+    /// Floor in a gap between two walls, with a different room on either side.
+    Doorway,
+    /// Floor on which objects of the group with this name are placed.
+    Group(#[schemars(length(min = 1, max = 100))] String),
+}
+
+impl Place for BTreeMap<String, Legend> {}

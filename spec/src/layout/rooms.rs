@@ -1,68 +1,9 @@
 //! [`Rooms`]: rooms in rows and columns, with doorways in the walls between them.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+use super::Rooms;
 use super::draws::{Draws, Purpose, share_of};
 use super::grid::{Grid, Scale, Side, SideOf};
 use super::plan::Plan;
-use crate::world::MAX_SEED;
-use crate::world::fields::{fields, word};
-
-fields! {
-    /// Rooms in rows and columns. A wall between two rooms has at most one doorway, at a random position; every room can be
-    /// reached from every other.
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(default, deny_unknown_fields)]
-    #[schemars(extend("examples" = [{ "grid": [2, 2], "room": [8, 8], "doorway": 1.5 }]))]
-    pub struct Rooms {
-        /// Number of rooms along x and y.
-        #[schemars(inner(range(min = 1, max = 100)))]
-        pub grid: [u32; 2] = [2, 2] => Field::ours(AsPart),
-        /// Sides of a room along x and y in metres, from the middle of one wall to the middle of the next.
-        #[schemars(inner(range(min = 0.1, max = 300.0)))]
-        pub room: [f64; 2] = [8.0, 8.0] => Field::ours(AsPart).unit("m"),
-        /// Width of the doorways in metres; together with a wall's thickness, at most the side of a room.
-        #[schemars(range(min = 0.1, max = 100.0))]
-        pub doorway: f64 = 1.5 => Field::ours(AsPart).unit("m"),
-        /// Thickness of the walls in metres.
-        #[schemars(range(min = 0.01, max = 50.0))]
-        pub wall: f64 = 0.3 => Field::ours(AsPart).unit("m"),
-        /// Height of the walls in metres; the arena's `wall_height` if absent.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(range(min = 0.0, max = 50.0))]
-        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
-        /// Share of the remaining walls between rooms that get a doorway too, 0..1: 0 leaves exactly one path between any two
-        /// rooms, 1 puts a doorway into every wall between two rooms.
-        #[schemars(range(min = 0.0, max = 1.0))]
-        pub loops: f64 = 1.0 => Field::ours(AsPart),
-        /// Doors in the doorways. Sampling adds the doors and keys to the world as objects; in a world that is not sampled,
-        /// this key adds none.
-        pub doors: RoomDoors = RoomDoors::None => Field::ours(AsPart),
-        /// Seed of the rooms. If absent, the world's `seed` is used, or 0 if that is absent too; a sampled world has its own
-        /// seed.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(range(min = 0, max = MAX_SEED))]
-        pub seed: Option<u64> = None => Field::ours(AsPart),
-    }
-}
-
-/// Doors in the doorways of rooms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum RoomDoors {
-    /// No doors.
-    #[default]
-    None,
-    /// Open doors.
-    Open,
-    /// Closed doors, opened by interaction.
-    Closed,
-    /// Closed doors, each opened with the key of its colour, which lies in a free cell.
-    Keyed,
-}
-
-word!(RoomDoors);
 
 impl Rooms {
     pub(super) fn size(&self) -> [f64; 2] {

@@ -2,28 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+use super::Legend;
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
-
-/// The meaning of a letter of a text.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(extend("examples" = ["wall", "floor", { "group": "goal" }]))]
-pub enum Legend {
-    /// A wall that fills the cell.
-    Wall,
-    /// Empty floor.
-    Floor,
-    /// Floor on which the agent may start.
-    Start,
-    /// Floor in a gap between two walls, with a different room on either side.
-    Doorway,
-    /// Floor on which objects of the group with this name are placed.
-    Group(#[schemars(length(min = 1, max = 100))] String),
-}
 
 impl Legend {
     /// The default meaning of a letter: `#` and `*` a wall, a space, `.` and `_` floor, `A` and `P` a start, `D` a doorway.

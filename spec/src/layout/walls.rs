@@ -1,72 +1,14 @@
 //! [`LayoutWall`]: single walls, as segments, circles and polygons.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+use super::LayoutWall;
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Plan, PlanWall};
-use crate::Color;
-use crate::world::fields::fields;
 
 /// Default thickness of a segment in metres.
 const THICKNESS: f64 = 0.3;
 
 /// Number of corners of a circle.
 const CORNERS: usize = 24;
-
-fields! {
-    /// One wall: a segment (`from` and `to`), a `circle`, or a `polygon`.
-    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(default, deny_unknown_fields)]
-    #[schemars(extend("examples" = [
-        { "from": [0, 0], "to": [5, 0], "thickness": 0.3, "height": 2 },
-        { "circle": { "center": [0, 0], "radius": 2 } },
-        { "polygon": [[0, 0], [2, 0], [1, 2]] },
-    ]))]
-    pub struct LayoutWall {
-        /// One end of a segment in metres.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(inner(range(min = -1e4, max = 1e4)))]
-        pub from: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
-        /// The other end of the segment in metres.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(inner(range(min = -1e4, max = 1e4)))]
-        pub to: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
-        /// Thickness of a segment in metres; 0.3 if absent.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(range(min = 0.01, max = 50.0))]
-        pub thickness: Option<f64> => Field::ours(AsPart).unit("m"),
-        /// A round wall; built as a polygon with 24 corners on the circle.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pub circle: Option<Circle> => Field::ours(AsPart),
-        /// Corners in metres, in order; the last joins the first.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-        pub polygon: Option<Vec<[f64; 2]>> => Field::ours(AsPart).unit("m"),
-        /// Height in metres; the arena's `wall_height` if absent.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(range(min = 0.0, max = 50.0))]
-        pub height: Option<f64> => Field::ours(AsPart).unit("m"),
-        /// Colour; the arena's `bounding_wall_color` if absent.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pub color: Option<Color> => Field::ours(AsPart),
-    }
-}
-
-fields! {
-    /// A circle on the ground.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(deny_unknown_fields)]
-    #[schemars(extend("examples" = [{ "center": [0, 0], "radius": 2 }]))]
-    pub struct Circle {
-        /// Its centre in metres.
-        #[schemars(inner(range(min = -1e4, max = 1e4)))]
-        pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
-        /// Its radius in metres.
-        #[schemars(range(min = 0.01, max = 300.0))]
-        pub radius: f64 => Field::ours(AsPart).unit("m"),
-    }
-}
 
 /// The keys that are present.
 pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'static str> {

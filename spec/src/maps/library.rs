@@ -7,12 +7,11 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::name;
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::limits::MAX_VALUES;
 use crate::schema::document::DocumentSchema;
-use crate::world::{Region, WorldDraft};
+use crate::world::Region;
 
 /// The document of a maps file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -121,23 +120,14 @@ impl MapLibrary {
         self.maps.extend(other.maps);
     }
 
-    /// The name of a map's layout, if there is one.
-    pub(crate) fn name(&self, map: u8) -> Option<&str> {
-        Some(&self.maps.get(&map)?.name)
+    /// The layout of a map, if there is one.
+    pub(crate) fn layout(&self, map: u8) -> Option<&MapLayout> {
+        self.maps.get(&map)
     }
 
     /// The layouts ordered by number.
     pub fn layouts(&self) -> impl Iterator<Item = &MapLayout> {
         self.maps.values()
-    }
-
-    /// Writes the layout of the world's predefined map into the world, if the library has it; after that, the world needs no
-    /// library.
-    pub fn apply(&self, world: &mut WorldDraft) {
-        let environment = &mut world.environment_params;
-        if let Some(map) = self.maps.get(&environment.map()) {
-            environment.map_regions = Some(map.excluded_regions.clone());
-        }
     }
 }
 
@@ -168,7 +158,7 @@ fn problems(maps: &[MapLayout]) -> Vec<Problem> {
         }
         if map.id == 0 && !map.excluded_regions.is_empty() {
             let found = format!("{} regions in map 0", map.excluded_regions.len());
-            let expected = format!("none: map 0 is the {} arena", name(0));
+            let expected = "none: map 0 is the empty arena";
             let problem = Problem::new("spec/value", pointer("excluded_regions"), found, expected);
             problems.push(problem.advise("give the layout a number from 1 to 4"));
         }

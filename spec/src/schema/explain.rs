@@ -8,11 +8,10 @@ use serde_json::Value;
 
 use super::advice;
 use super::part;
-use super::wording::{code_of, either, expected, types, words_of};
+use super::wording::{TEXT_PATTERN, code_of, either, expected, types, words_of};
 use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
 use crate::version;
-use crate::world::TEXT_PATTERN;
 
 /// A problem, with a measure of how specific it is.
 pub(super) struct Finding {

@@ -6,7 +6,7 @@ pub(crate) mod document;
 mod explain;
 mod forms;
 pub(crate) mod part;
-mod wording;
+pub(crate) mod wording;
 
 pub use document::DocumentSchema;
 

@@ -6,7 +6,9 @@ use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
 
 use super::part;
-use crate::world::TEXT_PATTERN;
+
+/// Pattern of the text on a sign.
+pub(crate) const TEXT_PATTERN: &str = "^[A-Z0-9!?<>+ -]*$";
 
 pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
     match kind {

@@ -120,6 +120,14 @@ fn is_classic(features: &[StateFeature]) -> bool {
 }
 
 impl AgentParams {
+    /// Width and height of the observations in pixels.
+    pub fn picture_size(&self) -> [u32; 2] {
+        [
+            self.observation_width.unwrap_or(self.observation_size),
+            self.observation_size,
+        ]
+    }
+
     /// Number of rows in the table of actions; `None` for continuous actions.
     pub fn num_actions(&self) -> Option<usize> {
         match &self.actions {

@@ -3,8 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::AgentParams;
-
 /// Default vertical field of view in degrees.
 pub(super) const DEFAULT_FIELD_OF_VIEW: f64 = 60.0;
 
@@ -23,14 +21,4 @@ pub enum Modality {
     Class,
     /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.
     Instance,
-}
-
-impl AgentParams {
-    /// Width and height of the observations in pixels.
-    pub fn picture_size(&self) -> [u32; 2] {
-        [
-            self.observation_width.unwrap_or(self.observation_size),
-            self.observation_size,
-        ]
-    }
 }

@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fields::{fields, word};
-use super::{AgentParams, EnvironmentParams, MAX_SEED, Object, Progress, Rules};
+use super::{AgentParams, EnvironmentParams, Object, Progress, Rules};
+use crate::limits::MAX_SEED;
+use crate::maps::MapLibrary;
 use crate::serde_defaults::is_default;
 use crate::version::WORLD_VERSION;
 
@@ -152,3 +154,14 @@ impl WorldDraft {
 }
 
 word!(GameMode);
+
+impl MapLibrary {
+    /// Writes the layout of the world's predefined map into the world, if the library has it; after that, the world needs no
+    /// library.
+    pub fn apply(&self, world: &mut WorldDraft) {
+        let environment = &mut world.environment_params;
+        if let Some(map) = self.layout(environment.map()) {
+            environment.map_regions = Some(map.excluded_regions.clone());
+        }
+    }
+}

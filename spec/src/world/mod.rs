@@ -12,6 +12,7 @@ mod lock_remarks;
 mod looks;
 mod object;
 mod progress;
+mod region;
 mod remarks;
 mod rules;
 mod table;
@@ -28,14 +29,14 @@ use serde::Serialize;
 pub use agent::{ActionModel, ActionSpace, AgentParams, Energy};
 pub use camera::Modality;
 pub use draft::{GameMode, ImageParams, WorldDraft};
-pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
+pub use environment::{Enclosure, EnvironmentParams, Wall};
 pub use features::StateFeature;
 pub use fields::{Compared, Comparison, Field, FieldPlace};
 pub(crate) use fields::{Fields, Place, Setter, places_of};
 pub use looks::{Covering, Looks, Style, Surface};
-pub(crate) use object::TEXT_PATTERN;
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus, Trigger};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
+pub use region::Region;
 pub use rules::{Delivery, EndCondition, Rules, Shaping};
 pub use table::LeafTexts;
 pub use things::{Door, Portable, Switch, SwitchAction};
@@ -48,9 +49,6 @@ use crate::layout::Plan;
 use crate::limits::MAX_WORLD_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::version;
-
-/// Largest seed of a world or an object, 2⁵³ − 1: the largest integer that every JSON reader represents exactly.
-pub const MAX_SEED: u64 = (1 << 53) - 1;
 
 /// Maximum number of samples in one image: 4096 × 4096 pixels with 2 × 2 samples each.
 pub const MAX_POINTS: u64 = 1 << 26;

@@ -6,13 +6,12 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::fields::{Place, fields, word};
-use super::{Door, MAX_SEED, Portable, Surface, Switch};
+use super::{Door, Portable, Surface, Switch};
 use crate::Color;
+use crate::limits::MAX_SEED;
+use crate::schema::wording::TEXT_PATTERN;
 use crate::serde_defaults::{half, is_default, is_one, one, yes};
 use crate::value::{ParameterType, Value};
-
-/// Pattern of the text on a sign.
-pub(crate) const TEXT_PATTERN: &str = "^[A-Z0-9!?<>+ -]*$";
 
 fields! {
     /// An object: its appearance, position, motion and reward.

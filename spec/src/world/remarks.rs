@@ -41,9 +41,9 @@ impl World {
     fn collect_remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
         let arena = &self.environment_params;
-        let [width, depth] = arena.arena_size();
+        let sides @ [width, depth] = arena.arena_size();
         let zones = arena.zones.iter().enumerate();
-        for (index, _) in zones.filter(|(_, zone)| zone.is_outside(arena)) {
+        for (index, _) in zones.filter(|(_, zone)| zone.is_outside(sides)) {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }

@@ -1,12 +1,14 @@
 //! Turns a [`WorldDraft`] into a [`World`] by checking its values against the rules for documents. Also reads and
 //! checks single objects.
 
+mod progress;
+mod zones;
+
 use std::sync::{Arc, LazyLock};
 
 use serde::Serialize;
 
 use super::{ActionModel, ActionSpace, MAX_POINTS, Object, World, WorldDraft};
-use super::{progress, zone};
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::layout::{self, Plan};
@@ -186,7 +188,7 @@ impl WorldDraft {
                 format!("at most {}, the most that the agent can have", energy.most),
             ));
         }
-        problems.extend(zone::problems(self));
+        problems.extend(zones::problems(self));
         problems.extend(self.layout_problems());
         problems.extend(progress::problems(self));
         problems.extend(duplicate_names(&self.objects));
