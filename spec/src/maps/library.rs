@@ -135,47 +135,31 @@ impl MapLibrary {
 fn problems(maps: &[MapLayout]) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (index, map) in maps.iter().enumerate() {
-        let pointer = |key: &str| format!("/maps/{index}/{key}");
+        let problem = |code, at: &str, found: String, expected: &str| {
+            Problem::new(code, format!("/maps/{index}/{at}"), found, expected)
+        };
         if let Some(first) = maps[..index].iter().position(|other| other.id == map.id) {
             let found = format!("{}, which map {first} has too", map.id);
-            problems.push(Problem::new(
-                "spec/duplicate-name",
-                pointer("id"),
-                found,
-                "a number of its own",
-            ));
+            problems.push(problem("spec/duplicate-name", "id", found, "a number of its own"));
         }
         for (key, limits) in [("x_limits", map.x_limits), ("y_limits", map.y_limits)] {
             if limits != whole_arena() {
                 let expected = "[-100, 100]: a predefined map is 200 m wide";
-                problems.push(Problem::new(
-                    "spec/value",
-                    pointer(key),
-                    format!("{limits:?}"),
-                    expected,
-                ));
+                problems.push(problem("spec/value", key, format!("{limits:?}"), expected));
             }
         }
         if map.id == 0 && !map.excluded_regions.is_empty() {
             let found = format!("{} regions in map 0", map.excluded_regions.len());
             let expected = "none: map 0 is the empty arena";
-            let problem = Problem::new("spec/value", pointer("excluded_regions"), found, expected);
+            let problem = problem("spec/value", "excluded_regions", found, expected);
             problems.push(problem.advise("give the layout a number from 1 to 4"));
         }
         for (region, polygon) in map.excluded_regions.iter().enumerate() {
-            let outside = polygon
-                .0
-                .iter()
-                .position(|corner| corner.iter().any(|metres| metres.abs() > 150.0));
-            if let Some(corner) = outside {
-                let found = format!("{:?}", polygon.0[corner]);
-                let at = format!("/maps/{index}/excluded_regions/{region}/{corner}");
-                problems.push(Problem::new(
-                    "spec/range",
-                    at,
-                    found,
-                    "a corner at most 50 m outside the arena",
-                ));
+            let is_outside = |corner: &[f64; 2]| corner.iter().any(|metres| metres.abs() > 150.0);
+            if let Some(corner) = polygon.0.iter().position(is_outside) {
+                let at = format!("excluded_regions/{region}/{corner}");
+                let expected = "a corner at most 50 m outside the arena";
+                problems.push(problem("spec/range", &at, format!("{:?}", polygon.0[corner]), expected));
             }
         }
     }

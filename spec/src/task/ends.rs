@@ -7,7 +7,8 @@ use indexmap::IndexMap;
 
 use super::TaskSpec;
 use super::parameter::{Domain, Parameter, Role};
-use super::variant::{DEFAULT_VARIANT, Variant, violated_requirement};
+use super::variant::{Variant, violated_requirement};
+use super::variant_spec::DEFAULT_VARIANT;
 use crate::distribution::Distribution;
 use crate::value::{ParameterType, Value};
 

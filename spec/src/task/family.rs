@@ -1,11 +1,8 @@
 //! Families of variants: a grid or a sweep declares many variants at once, with stable names.
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use super::TaskDocument;
-use super::parameter::{Parameter, Role};
+use super::parameter::Parameter;
 use super::variant_spec::VariantSpec;
 use crate::describe::escape;
 use crate::error::Problem;
@@ -20,56 +17,6 @@ const MAX_VARIANT_VALUES: usize = 400_000;
 
 /// Maximum length of a variant's name in characters, as in scenarios.
 const MAX_NAME: usize = 100;
-
-/// Evenly spaced values of one number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("examples" = [{ "from": 0.1, "to": 10, "steps": 5, "spacing": "logarithmic" }]))]
-pub struct Sweep {
-    /// The first value.
-    pub from: f64,
-    /// The last value.
-    pub to: f64,
-    /// Number of values, including both ends.
-    #[schemars(range(min = 2, max = 1000))]
-    pub steps: u32,
-    /// How the values are spaced.
-    #[serde(default)]
-    pub spacing: Spacing,
-}
-
-/// How the values of a sweep are spaced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Spacing {
-    /// The same difference between neighbours.
-    #[default]
-    Linear,
-    /// The same ratio between neighbours; both ends are above 0.
-    Logarithmic,
-}
-
-impl Sweep {
-    /// The values in order, rounded to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end
-    /// at or below 0.
-    pub fn values(&self) -> Option<Vec<f64>> {
-        let last = f64::from(self.steps.max(2) - 1);
-        let share = |k: u32| f64::from(k) / last;
-        let value = |k: u32| match self.spacing {
-            Spacing::Linear => self.from + (self.to - self.from) * share(k),
-            Spacing::Logarithmic => {
-                let (from, to) = (libm::log(self.from), libm::log(self.to));
-                libm::exp(from + (to - from) * share(k))
-            }
-        };
-        let possible = self.spacing == Spacing::Linear || (self.from > 0.0 && self.to > 0.0);
-        possible.then(|| (0..self.steps.max(2)).map(|k| rounded(value(k))).collect())
-    }
-}
-
-fn rounded(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
-}
 
 /// A single variant or a member of a family, ready to be resolved.
 #[derive(Clone, Debug)]
@@ -99,9 +46,8 @@ fn too_many(variants: usize, parameters: usize) -> Option<(String, String)> {
 }
 
 /// Fails if a document has too many variants, or too many values in them.
-pub(crate) fn fits(document: &TaskDocument) -> Result<(), Vec<Problem>> {
-    let too_many = too_many(document.variants.len(), document.parameters.len());
-    too_many.map_or(Ok(()), |(found, expected)| {
+pub(crate) fn fits(variants: usize, parameters: usize) -> Result<(), Vec<Problem>> {
+    too_many(variants, parameters).map_or(Ok(()), |(found, expected)| {
         let problem = Problem::new("spec/length", "/variants", found, expected);
         Err(vec![problem.advise("split the task")])
     })
@@ -167,7 +113,7 @@ pub(crate) fn unfold(
 }
 
 /// A number of a sweep as a value of its parameter.
-fn value_of(parameter: Option<&Parameter>, number: f64) -> Value {
+pub(super) fn value_of(parameter: Option<&Parameter>, number: f64) -> Value {
     match parameter {
         Some(known) if known.kind == ParameterType::Integer => Value::Integer(number.round() as i64),
         _ => Value::Number(number),
@@ -344,48 +290,10 @@ fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     }
 }
 
-/// The problems of the values on a family's axes, with their pointers.
-pub(crate) fn problems(
-    parameters: &IndexMap<String, Parameter>,
-    name: &str,
-    spec: &VariantSpec,
-    problems_of: impl Fn(&str, &str, &Value) -> Vec<Problem>,
-) -> Vec<Problem> {
-    let pointer = format!("/variants/{}", escape(name));
-    let mut found = Vec::new();
-    for (parameter, values) in &spec.grid {
-        for (index, value) in values.iter().enumerate() {
-            found.extend(problems_of(
-                &format!("{pointer}/grid/{}/{index}", escape(parameter)),
-                parameter,
-                value,
-            ));
-        }
-    }
-    for (parameter, sweep) in &spec.sweep {
-        let at = format!("{pointer}/sweep/{}", escape(parameter));
-        let known = parameters.get(parameter).filter(|known| known.role == Role::Variant);
-        if let Some(known) = known.filter(|known| !known.kind.is_numeric() || known.kind == ParameterType::Vector) {
-            let found_type = format!("a sweep over a {}", known.kind.name());
-            let advice = "list the values under \"grid\" instead";
-            found.push(Problem::new("spec/type", at, found_type, "a number, an integer or a heading").advise(advice));
-            continue;
-        }
-        if known.is_none() {
-            // No variant can set it, so one report is enough.
-            found.extend(problems_of(&at, parameter, &Value::Number(sweep.from)));
-            continue;
-        }
-        for (end, key) in [(sweep.from, "from"), (sweep.to, "to")] {
-            found.extend(problems_of(&format!("{at}/{key}"), parameter, &value_of(known, end)));
-        }
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::task::{Spacing, Sweep};
 
     fn family(json: &str) -> Vec<String> {
         let spec: IndexMap<String, VariantSpec> = serde_json::from_str(json).unwrap();

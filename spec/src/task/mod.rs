@@ -8,12 +8,16 @@ mod document;
 mod element_weights;
 mod ends;
 mod expression;
+mod extends;
 mod family;
 mod group;
 mod layouts;
+mod load;
 mod parameter;
 mod read;
+mod readers;
 mod scope;
+mod sweep;
 mod template;
 mod variant;
 mod variant_spec;
@@ -30,22 +34,18 @@ pub use compare::{Compare, MeasureName};
 pub(crate) use document::TaskDocument;
 pub use element_weights::ElementWeights;
 pub use expression::Requirement;
-pub use family::{Spacing, Sweep};
 pub use group::{Facing, Group, KeepOut};
 pub use parameter::{Domain, Parameter, Role};
-pub use read::Readers;
+pub use readers::Readers;
+pub use scope::Resolved;
+pub use sweep::{Spacing, Sweep};
 pub use template::{Hole, Source, Template};
-pub use variant::{DEFAULT_VARIANT, Resolved, Variant};
-pub use variant_spec::VariantSpec;
+pub use variant::Variant;
+pub use variant_spec::{DEFAULT_VARIANT, VariantSpec};
 
-use crate::classes::Classes;
-use crate::describe::escape;
 use crate::distribution::Number;
-use crate::document::Document;
-use crate::error::{Listed, Problem, SpecError};
-use crate::limits::{MAX_TASK_DEPTH, MAX_VALUES};
+use crate::error::{Problem, SpecError};
 use crate::value::Value;
-use crate::version;
 use crate::world::{Object, WorldDraft};
 use scope::{Scope, Unsettled};
 
@@ -107,51 +107,7 @@ pub enum Count {
     Drawn(Source),
 }
 
-/// Maximum size in bytes of a document that is searched for further problems after the schema has rejected it.
-const MAX_COPIED_BYTES: usize = 1 << 17;
-
 impl TaskSpec {
-    /// Reads and checks a task spec. `name` is the document's name in messages, usually its path.
-    ///
-    /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
-    pub fn from_json(name: &str, text: &str) -> Result<Arc<Self>, SpecError> {
-        Self::from_json_with(name, text, None)
-    }
-
-    /// Like [`TaskSpec::from_json`]; if classes are given, also rejects objects with other classes or models.
-    ///
-    /// # Errors
-    /// As [`TaskSpec::from_json`].
-    pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
-        let mut document = Document::parse(name, text, MAX_VALUES)?;
-        document.fail_on(Vec::from_iter(too_deep(&document.value, "", 0)))?;
-        document.upgrade(&version::TASK)?;
-        let listed = TaskDocument::schema().problems(&document.value);
-        if !listed.problems.is_empty() {
-            // The search for other problems needs a copy, which would take too much memory for a large document.
-            let Listed { mut problems, more } = listed;
-            if text.len() <= MAX_COPIED_BYTES {
-                problems = check::partial::problems(&document.value, problems, classes);
-            }
-            document.fail_on(Listed { problems, more })?;
-        }
-        let spec: TaskDocument = document.deserialize()?;
-        let task = check::compile(spec, classes, check::Unsound::default());
-        task.map(Arc::new).map_err(|problems| {
-            debug_assert!(!problems.is_empty(), "a task without problems compiles");
-            document.error(problems)
-        })
-    }
-
-    /// The problems of all objects that have, or can have, an unknown class or model.
-    pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
-        // Everything else was already valid when the task was loaded.
-        check::compile(self.document.clone(), Some(classes), check::Unsound::default())
-            .err()
-            .unwrap_or_default()
-    }
-
     /// The task's name.
     pub fn name(&self) -> &str {
         &self.document.name
@@ -270,7 +226,7 @@ impl TaskSpec {
                 known: known.into_iter().map(str::to_owned).collect(),
             });
         }
-        let values = variant_spec::values_of(&self.document.parameters, &self.variants, name)
+        let values = extends::values_of(&self.document.parameters, &self.variants, name)
             .expect("loading the task checked every chain of extends");
         // Loading checked the declared variants, but not the defaults, which may never be needed.
         let problems = if self.variants.contains_key(name) {
@@ -393,27 +349,5 @@ impl TaskSpec {
             }
         }
         problems
-    }
-}
-
-/// The first value nested too deeply.
-fn too_deep(json: &Json, pointer: &str, depth: usize) -> Option<Problem> {
-    if depth > MAX_TASK_DEPTH {
-        let found = format!("more than {MAX_TASK_DEPTH} lists and objects in each other");
-        let expected = format!("at most {MAX_TASK_DEPTH}; is a bracket missing?");
-        return Some(Problem::new("spec/value", pointer, found, expected));
-    }
-    let inside = |key: &str, child| too_deep(child, &format!("{pointer}/{}", escape(key)), depth + 1);
-    match json {
-        Json::Array(list) => list
-            .iter()
-            .enumerate()
-            .filter(|(_, child)| child.is_array() || child.is_object())
-            .find_map(|(index, child)| inside(&index.to_string(), child)),
-        Json::Object(map) => map
-            .iter()
-            .filter(|(_, child)| child.is_array() || child.is_object())
-            .find_map(|(key, child)| inside(key, child)),
-        _ => None,
     }
 }

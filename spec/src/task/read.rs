@@ -1,34 +1,11 @@
-//! Finds the readers of a parameter: the worlds of a task, or only the draws of other parameters. Also decides, by `read_if`,
-//! whether anything reads it in a variant. A parameter that nothing reads does not count in distances.
+//! Decides, by `read_if`, whether anything reads a parameter in a variant, and looks up its readers in the task. A parameter
+//! that nothing reads does not count in distances.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use serde::Serialize;
-use serde_json::Value as Json;
-
-use super::TaskSpec;
-use super::parameter::Role;
-use super::variant::Variant;
+use super::{Readers, TaskSpec, Variant};
 use crate::value::Value;
-
-/// The readers of a parameter.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Readers {
-    /// Whether a world, a group or the value of a fixed parameter reads it.
-    pub worlds: bool,
-    /// The randomized parameters whose distributions read it, and parameters of type distribution with a choice that does, in
-    /// the task's order.
-    pub draws: Vec<String>,
-}
-
-impl Readers {
-    /// Whether only distributions read it: of randomized parameters, or values of distribution parameters.
-    pub fn are_draws_alone(&self) -> bool {
-        !self.worlds && !self.draws.is_empty()
-    }
-}
 
 impl TaskSpec {
     /// The readers of a parameter; no readers for an unknown name.
@@ -50,55 +27,9 @@ impl TaskSpec {
             worlds: false,
             draws: Vec::new(),
         };
-        let readers = self.readers.get_or_init(|| self.find_readers());
+        let readers = self.readers.get_or_init(|| self.document.readers());
         readers.get(parameter).unwrap_or(&NO_READERS)
     }
-
-    fn find_readers(&self) -> BTreeMap<String, Readers> {
-        let document = &self.document;
-        let mut readers: BTreeMap<String, Readers> = BTreeMap::new();
-        let mut in_worlds = names_in(&document.world);
-        in_worlds.extend(names_in(&document.groups));
-        for (name, other) in &document.parameters {
-            in_worlds.extend(names_in(&other.value));
-            let read = names_in(&(&other.distribution, &other.choices, &other.default));
-            // A look-up over another draw depends on that draw, not only on its distribution.
-            let is_drawn = |name: &String| {
-                document
-                    .parameters
-                    .get(name)
-                    .is_some_and(|own| own.role == Role::Randomized)
-            };
-            if other.distribution.is_some() && read.iter().any(is_drawn) {
-                in_worlds.extend(read.iter().cloned());
-            }
-            for read in read {
-                readers.entry(read).or_default().draws.push(name.clone());
-            }
-        }
-        for read in in_worlds {
-            readers.entry(read).or_default().worlds = true;
-        }
-        readers
-    }
-}
-
-/// The names that occur anywhere in a part of a document as `{ "param": NAME }`.
-fn names_in(part: &impl Serialize) -> BTreeSet<String> {
-    fn walk(json: &Json, found: &mut BTreeSet<String>) {
-        match json {
-            Json::Object(map) => {
-                found.extend(map.get("param").and_then(Json::as_str).map(str::to_owned));
-                map.values().for_each(|child| walk(child, found));
-            }
-            Json::Array(list) => list.iter().for_each(|child| walk(child, found)),
-            _ => {}
-        }
-    }
-    let mut found = BTreeSet::new();
-    let json = serde_json::to_value(part).expect("a document that was read serialises");
-    walk(&json, &mut found);
-    found
 }
 
 impl Variant {

@@ -4,8 +4,7 @@ use indexmap::IndexMap;
 
 use super::parameter::{Parameter, Role};
 use super::template::Source;
-use super::variant::Resolved;
-use crate::distribution::{Case, Distribution, Number};
+use crate::distribution::{Case, Distribution, Number, ParamRef};
 use crate::error::first_of;
 use crate::value::{ParameterType, Value};
 
@@ -18,6 +17,17 @@ pub(crate) struct Scope<'a> {
     pub(crate) parameters: &'a IndexMap<String, Parameter>,
     pub(crate) values: &'a IndexMap<String, Value>,
     pub(crate) drawn: &'a [(&'a str, Value)],
+}
+
+/// The result of resolving a source in a variant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Resolved {
+    /// The same value in every world.
+    Value(Value),
+    /// The value of this randomized parameter, or one of its components.
+    Randomized(ParamRef),
+    /// A separate draw.
+    Draw(Distribution),
 }
 
 /// Why a source cannot be resolved.

@@ -8,16 +8,13 @@ use sha2::{Digest, Sha256};
 use super::TaskSpec;
 use super::expression::Requirement;
 use super::parameter::{Parameter, Role};
-use super::scope::{self, Scope, Unsettled};
+use super::scope::{self, Resolved, Scope, Unsettled};
 use super::template::Source;
 use super::variant_spec::variant_parameters;
 use crate::describe::hexadecimal;
-use crate::distribution::{Distribution, Number, ParamRef};
+use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, SpecError};
 use crate::value::Value;
-
-/// Name of the variant in which every parameter has its default, unless the task declares one with this name.
-pub const DEFAULT_VARIANT: &str = "default";
 
 /// One variant of a task, ready to be sampled and compared. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -25,17 +22,6 @@ pub struct Variant {
     task: Arc<TaskSpec>,
     name: String,
     values: Arc<IndexMap<String, Value>>,
-}
-
-/// The result of resolving a source in a variant.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Resolved {
-    /// The same value in every world.
-    Value(Value),
-    /// The value of this randomized parameter, or one of its components.
-    Randomized(ParamRef),
-    /// A separate draw.
-    Draw(Distribution),
 }
 
 impl Variant {

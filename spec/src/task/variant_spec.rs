@@ -1,18 +1,17 @@
-//! [`VariantSpec`]: a variant as declared in a document. Applies its values on top of those of the variants that it extends,
-//! and checks them.
+//! [`VariantSpec`]: a variant, or a family of them, as declared in a document.
 
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::DEFAULT_VARIANT;
-use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
-use crate::describe::escape;
-use crate::error::{MAX_PROBLEMS, Problem, first_of};
-use crate::suggest::nearest;
+use super::sweep::Sweep;
+use crate::error::first_of;
 use crate::value::Value;
+
+/// Name of the variant in which every parameter has its default, unless the task declares one with this name.
+pub const DEFAULT_VARIANT: &str = "default";
 
 /// A variant, or a family of them, as a document declares it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -76,105 +75,6 @@ fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     })
 }
 
-/// Maximum length of a chain of variants that extend each other.
-pub(crate) const MAX_EXTENDED: usize = 100;
-
-/// The values of a variant: its own, then those of the variants that it extends, then the defaults.
-///
-/// Fails if the chain of `extends` is broken, cyclic or too long; [`problems`] finds invalid values.
-pub(crate) fn values_of(
-    parameters: &IndexMap<String, Parameter>,
-    variants: &Variants,
-    name: &str,
-) -> Result<IndexMap<String, Value>, Problem> {
-    let mut chain: Vec<&str> = Vec::new();
-    let mut next = variants.get(name).map(|variant| (name, variant));
-    while let Some((name, variant)) = next {
-        let pointer = |start: &str| format!("/variants/{}/extends", escape(&variants[start].origin));
-        if let Some(first) = chain.iter().position(|known| *known == name) {
-            let found = format!("a cycle: {} extends {name}", chain[first..].join(" extends "));
-            let expected = "a chain of extends that ends";
-            return Err(Problem::new("spec/extends-cycle", pointer(chain[0]), found, expected));
-        }
-        chain.push(name);
-        if chain.len() > MAX_EXTENDED {
-            let found = format!("a chain of more than {MAX_EXTENDED} variants that extend each other");
-            let expected = format!("at most {MAX_EXTENDED}");
-            let problem = Problem::new("spec/length", pointer(chain[0]), found, expected);
-            return Err(problem.advise("extend a variant further up"));
-        }
-        next = match &variant.extends {
-            None => None,
-            Some(parent) if parent == DEFAULT_VARIANT && !variants.contains_key(parent) => None,
-            Some(parent) => Some((
-                parent,
-                variants
-                    .get(parent)
-                    .ok_or_else(|| unknown_parent(&variant.origin, parent, variants))?,
-            )),
-        };
-    }
-    let mut values = IndexMap::new();
-    for (parameter, declared) in parameters
-        .iter()
-        .filter(|(_, declared)| declared.role != Role::Randomized)
-    {
-        let own = chain.iter().find_map(|name| variants[*name].values.get(parameter));
-        let value = own.or(declared.default.as_ref()).or(declared.value.as_ref());
-        if let Some(typed) = value.and_then(|value| declared.typed(value)) {
-            values.insert(parameter.clone(), typed);
-        }
-    }
-    Ok(values)
-}
-
-fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
-    let known: Vec<&str> = variants.keys().map(String::as_str).chain([DEFAULT_VARIANT]).collect();
-    let shown = first_of(&known);
-    Problem::new(
-        "spec/unknown-variant",
-        format!("/variants/{}/extends", escape(origin)),
-        format!("{parent:?}"),
-        format!("one of {shown}"),
-    )
-    .suggest(parent, known)
-}
-
-/// All problems of variants, except those of values of unsound parameters.
-pub(crate) fn problems(
-    parameters: &IndexMap<String, Parameter>,
-    document: &IndexMap<String, VariantSpec>,
-    variants: &Variants,
-    is_unsound: impl Fn(&str) -> bool,
-) -> Vec<Problem> {
-    let mut problems: Vec<Problem> = variants
-        .keys()
-        .filter_map(|name| values_of(parameters, variants, name).err())
-        .take(MAX_PROBLEMS + 1)
-        .collect();
-    problems.dedup();
-    let check = |pointer: &str, parameter: &str, value: &Value| {
-        if is_unsound(parameter) {
-            return Vec::new();
-        }
-        problems_of(parameters, pointer, parameter, value)
-    };
-    for (name, variant) in document {
-        for (parameter, value) in &variant.values {
-            if problems.len() > MAX_PROBLEMS {
-                return problems;
-            }
-            problems.extend(check(
-                &format!("/variants/{}/{}", escape(name), escape(parameter)),
-                parameter,
-                value,
-            ));
-        }
-        problems.extend(super::family::problems(parameters, name, variant, check));
-    }
-    problems
-}
-
 /// The parameters that variants may set, and the expectation to report if a different name is found.
 pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (Vec<&String>, String) {
     let settable = parameters
@@ -183,27 +83,4 @@ pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (V
     let known: Vec<&String> = settable.map(|(name, _)| name).collect();
     let expected = format!("a variant parameter, one of {}", first_of(&known));
     (known, expected)
-}
-
-fn problems_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Vec<Problem> {
-    let Some(parameter) = parameters.get(name) else {
-        let (known, expected) = variant_parameters(parameters);
-        let found = format!("the unknown parameter {name:?}");
-        let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
-        return vec![Problem {
-            advice: near.map(|near| format!("did you mean {near:?}?")),
-            ..Problem::new("spec/unknown-key", pointer, found, expected)
-        }];
-    };
-    if parameter.role != Role::Variant {
-        let role = if parameter.role == Role::Fixed {
-            "fixed"
-        } else {
-            "randomized"
-        };
-        let found = format!("a value for the {role} parameter {name:?}");
-        let problem = Problem::new("spec/role", pointer, found, "values for variant parameters only");
-        return vec![problem.advise(format!("give {name:?} the role variant, or leave it out here"))];
-    }
-    parameter.value_problems(pointer, value)
 }

@@ -3,9 +3,8 @@
 use serde_json::{Value as Json, json};
 
 use super::super::group::{Facing, Group};
-use super::super::scope::Scope;
+use super::super::scope::{Resolved, Scope};
 use super::super::template::Source;
-use super::super::variant::Resolved;
 use super::super::{Count, PlacedGroup};
 use super::Check;
 use crate::MAX_OBJECTS;

@@ -6,6 +6,7 @@ mod json;
 pub(super) mod partial;
 mod sources;
 mod templates;
+mod variants;
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -13,18 +14,27 @@ use std::sync::OnceLock;
 use indexmap::IndexMap;
 
 use super::expression::{Kind, Requirement};
+use super::extends::{is_built_on, values_of};
 use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
 use super::template::Source;
-use super::variant::{self, DEFAULT_VARIANT};
-use super::variant_spec;
+use super::variant;
+use super::variant_spec::{DEFAULT_VARIANT, RESERVED};
 use super::{PlacedGroup, TaskDocument, TaskSpec};
 use crate::classes::Classes;
 use crate::describe::escape;
 use crate::distribution::{Distribution, Number};
 use crate::error::Problem;
 use crate::value::{ParameterType, Value};
-pub(super) use partial::Unsound;
+
+/// Invalid parts of a document.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Unsound {
+    /// Invalid parameters: references to them are not checked.
+    pub(super) parameters: BTreeSet<String>,
+    /// Invalid variants: variants that extend them are not checked.
+    pub(super) variants: BTreeSet<String>,
+}
 
 /// The checked task, or all problems; `classes` are the known classes of objects, if any are given.
 ///
@@ -34,7 +44,7 @@ pub(super) fn compile(
     classes: Option<&Classes>,
     mut unsound: Unsound,
 ) -> Result<TaskSpec, Vec<Problem>> {
-    family::fits(&document)?;
+    family::fits(document.variants.len(), document.parameters.len())?;
     let mut problems: Vec<Problem> = reserved_names(&document.parameters).collect();
     problems.extend(names(&document));
     for (name, parameter) in &document.parameters {
@@ -49,7 +59,7 @@ pub(super) fn compile(
     problems.extend(found);
     let is_unsound = |name: &str| unsound.parameters.contains(name);
     let reported: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
-    let more = variant_spec::problems(&document.parameters, &document.variants, &variants, is_unsound);
+    let more = variants::problems(&document.parameters, &document.variants, &variants, is_unsound);
     problems.extend(more.into_iter().filter(|problem| !reported.contains(&problem.pointer)));
     let of_variants: BTreeSet<&str> = problems
         .iter()
@@ -135,7 +145,7 @@ fn names(document: &TaskDocument) -> impl Iterator<Item = Problem> {
 fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Item = Problem> {
     parameters
         .keys()
-        .filter(|name| variant_spec::RESERVED.contains(&name.as_str()))
+        .filter(|name| RESERVED.contains(&name.as_str()))
         .map(|name| {
             let found = format!("a parameter named {name:?}");
             Problem::new(
@@ -145,21 +155,6 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
                 "a name that variants do not use themselves",
             )
         })
-}
-
-/// Whether a variant, or one that it extends, is among these.
-fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> bool {
-    let mut next = Some(name);
-    // A cycle also exceeds the longest chain allowed.
-    for _ in 0..=variant_spec::MAX_EXTENDED {
-        let Some(name) = next else { return false };
-        let declared = variants.get(name);
-        if unsound.contains(name) || declared.is_some_and(|declared| unsound.contains(&declared.origin)) {
-            return true;
-        }
-        next = declared.and_then(|declared| declared.extends.as_deref());
-    }
-    next.is_some()
 }
 
 /// A check of one document, which collects problems.
@@ -181,7 +176,7 @@ impl<'a> Check<'a> {
         let checked_variants = names
             .filter(|name| !is_built_on(variants, name, &unsound.variants))
             .filter_map(|name| {
-                let mut values = variant_spec::values_of(&document.parameters, variants, name).ok()?;
+                let mut values = values_of(&document.parameters, variants, name).ok()?;
                 values.retain(|parameter, _| !unsound.parameters.contains(parameter));
                 Some((name.to_owned(), values))
             })

@@ -1,24 +1,13 @@
 //! Checks the valid remainder of a task document that the schema rejects, so that all problems are reported at once, without
 //! problems that merely follow from others.
 
-use std::collections::BTreeSet;
-
 use serde_json::{Value as Json, json};
 
 use super::super::TaskDocument;
-use super::compile;
+use super::{Unsound, compile};
 use crate::classes::Classes;
 use crate::describe::escape;
 use crate::error::Problem;
-
-/// Invalid parts of a document.
-#[derive(Clone, Debug, Default)]
-pub(in crate::task) struct Unsound {
-    /// Invalid parameters: references to them are not checked.
-    pub(in crate::task) parameters: BTreeSet<String>,
-    /// Invalid variants: variants that extend them are not checked.
-    pub(in crate::task) variants: BTreeSet<String>,
-}
 
 /// All problems of a document that the schema rejects: the schema's, and those that the other checks find in the remainder.
 pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes: Option<&Classes>) -> Vec<Problem> {
