@@ -1,12 +1,10 @@
 //! [`Case`]: a look-up that selects a value by the value of a parameter.
 
-use std::borrow::Cow;
-
 use indexmap::IndexMap;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use super::reference::{Number, ParamRef};
+use super::reference::ParamRef;
 
 /// Selects a value by the value of a parameter: `{ "case": { "param": "cue" }, "of": { "red": 50 }, "else": 0 }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,17 +29,6 @@ impl<T> Case<T> {
             .iter()
             .map(|(key, case)| (format!("of/{}", crate::describe::escape(key)), case));
         of.chain(self.otherwise.iter().map(|case| ("else".to_owned(), case)))
-    }
-}
-
-impl JsonSchema for Case<Number> {
-    fn schema_name() -> Cow<'static, str> {
-        "NumberCase".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let number = generator.subschema_for::<Number>();
-        schema(generator, "A number selected by the value of a parameter.", &number)
     }
 }
 

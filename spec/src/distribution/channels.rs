@@ -6,7 +6,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::reference::{Number, ParamRef};
+use super::number::Number;
+use super::reference::ParamRef;
 use crate::Color;
 
 /// A number that can be a channel of a colour: [`Number`] in a spec, `f64` in a variant.

@@ -11,6 +11,7 @@ mod display;
 mod fault;
 mod map;
 mod moments;
+mod number;
 mod planar;
 mod points;
 mod quantile;
@@ -28,8 +29,9 @@ pub use case::Case;
 pub use cells::{CellKind, CellRoom};
 pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use moments::Moments;
+pub use number::Number;
 pub use points::{Order, Spread};
-pub use reference::{Number, ParamRef};
+pub use reference::ParamRef;
 pub(crate) use support::MAX_ATOMS;
 pub use turn::Turns;
 

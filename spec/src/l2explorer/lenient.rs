@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::read::Reader;
+use super::reader::Reader;
 use crate::describe::describe;
 
 impl Reader {

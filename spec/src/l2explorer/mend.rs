@@ -3,8 +3,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::Part;
-use super::read::Reader;
+use super::reader::Reader;
 use crate::color::Color;
 use crate::describe::describe;
 use crate::schema::part;
@@ -64,13 +63,6 @@ impl Entry {
 }
 
 impl Reader {
-    /// Repairs the entries of a part of the file.
-    pub(super) fn mend(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
-        for (key, entry) in &part.entries {
-            self.mend_entry(at, map, (*key, entry), part.defaults.get(*key));
-        }
-    }
-
     /// Repairs one entry; `default` is its default, if it has one.
     pub(super) fn mend_entry(
         &mut self,

@@ -1,18 +1,19 @@
 //! Reads L2Explorer's reset files into a [`World`], with a warning for everything that is not in standard form.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde_json::{Map, Value as Json};
 
 use super::lenient::{drop_decimal_point, word};
 use super::mend::Entry;
+use super::reader::{Reader, as_spelled};
 use super::{PARTS, Part};
-use crate::describe::{describe, escape};
+use crate::describe::escape;
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_VALUES, MAX_WORLD_VALUES};
 use crate::maps::{self, MapLibrary};
-use crate::warning::{Remarks, Warning};
+use crate::warning::Warning;
 use crate::world::{Enclosure, Object, World, WorldDraft};
 
 impl World {
@@ -123,37 +124,7 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-/// Maps a pointer with our key names to a pointer into the file, where keys may be spelled differently.
-fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
-    let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
-    let longest_known = ends
-        .filter_map(|end| Some((end, spelled.get(&pointer[..end])?)))
-        .next_back();
-    match longest_known {
-        Some((end, place)) => format!("{place}{}", &pointer[end..]),
-        None => pointer,
-    }
-}
-
-#[derive(Default)]
-pub(super) struct Reader {
-    warnings: Remarks,
-    /// For each object of the world, its index in the file.
-    pub(super) kept: Vec<usize>,
-    /// Entries with keys that the file spells differently: from pointers with our names to pointers into the file.
-    pub(super) spelled: BTreeMap<String, String>,
-}
-
 impl Reader {
-    pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        self.warnings.push(as_spelled(pointer.into(), &self.spelled), text);
-    }
-
-    /// Warns about an unexpected value. `expected` says what was expected and what is assumed.
-    pub(super) fn warn_instead(&mut self, pointer: impl Into<String>, found: &Json, expected: &str) {
-        self.warn(pointer, format!("found {}, expected {expected}", describe(found)));
-    }
-
     fn world(&mut self, json: Json) -> Json {
         let Json::Object(map) = json else {
             return json;
@@ -243,6 +214,13 @@ impl Reader {
             }
         }
         map
+    }
+
+    /// Repairs the entries of a part of the file.
+    pub(super) fn mend(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
+        for (key, entry) in &part.entries {
+            self.mend_entry(at, map, (*key, entry), part.defaults.get(*key));
+        }
     }
 
     /// Reads the agent's entries that need more than the common rules.

@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::lenient::{stimulus, word};
 use super::mend::Entry;
-use super::read::Reader;
+use super::reader::Reader;
 use super::{ASSUMED_SPEED, PARTS, black_is_chosen};
 use crate::describe::describe;
 use crate::limits::MAX_OBJECTS;

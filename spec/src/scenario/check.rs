@@ -1,4 +1,4 @@
-//! Checks of a scenario beyond its schema: rules across blocks, and the tasks that it names.
+//! Reads a scenario, and checks it beyond its schema: rules across blocks, and the tasks that it names.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,10 +6,55 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::{Block, BlockKind, DriftSwitch, Phase, Regime, Scenario};
+use crate::document::Document;
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of};
+use crate::limits::MAX_SCENARIO_VALUES;
 use crate::names;
 use crate::task::TaskSpec;
 use crate::value::Value;
+use crate::version;
+
+impl Scenario {
+    /// Reads a scenario strictly. `name` is the document's name in messages, usually its path.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        Self::from_json_with(name, text, |_| None)
+    }
+
+    /// Reads a scenario strictly, and checks its variants and their values against the tasks that can be found.
+    ///
+    /// `task` is called once for each task that the scenario names; if it returns `None`, that task is not checked.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Scenario, TaskSpec};
+    /// let lamps = TaskSpec::from_json("lamps", r#"{ "name": "lamps", "variants": { "dim": {}, "bright": {} } }"#)?;
+    /// let text = r#"{ "name": "s", "blocks": [{ "type": "learning",
+    ///     "regimes": [{ "task": "lamps", "variant": "brigth", "count": 1 }] }] }"#;
+    /// let error = Scenario::from_json_with("s", text, |name| (name == "lamps").then(|| lamps.clone())).unwrap_err();
+    /// assert!(error.to_string().ends_with("did you mean \"bright\"?"));
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn from_json_with(
+        name: &str,
+        text: &str,
+        task: impl FnMut(&str) -> Option<Arc<TaskSpec>>,
+    ) -> Result<Self, SpecError> {
+        let mut document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
+        document.upgrade(&version::SCENARIO)?;
+        document.fail_on(Self::schema().problems(&document.value))?;
+        let scenario: Self = document.deserialize()?;
+        let mut problems = alone(&scenario);
+        problems.extend(against_tasks(&scenario, task));
+        document.fail_on(problems)?;
+        Ok(scenario)
+    }
+}
 
 /// Each regime with its block and its pointer.
 fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Block, &Regime)> {
@@ -87,7 +132,7 @@ impl<'a> DeclaredVariant<'a> {
 }
 
 /// All problems of a scenario that can be found without its tasks.
-pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
+fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
     problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
@@ -182,7 +227,7 @@ fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
 }
 
 /// All problems of a scenario with the tasks that it names. Each task is requested once, even if it is not found.
-pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
+fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
     let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
     let mut problems = Vec::new();
     for (pointer, _, regime) in regimes(scenario).filter(|(.., regime)| regime.world.is_none()) {

@@ -1,6 +1,6 @@
 //! [`RegimeDrift`]: a drift from one variant to another, as declared in a scenario.
 
-use driftworld_text::NAME_PATTERN;
+use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct RegimeDrift {
     pub task: Option<String>,
     /// Values that override those of the end variant, by parameter.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(schema_with = "super::regime::values_schema")]
+    #[schemars(schema_with = "values_schema")]
     pub values: IndexMap<String, Value>,
     /// The name of the variant with these values in tables and logs; only with `values`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -142,6 +142,15 @@ impl RegimeDrift {
         let share = f64::from(experience.min(last)) / f64::from(last);
         self.from * (1.0 - share) + self.until * share
     }
+}
+
+/// Values by parameter. Only the task knows which values are valid, so the schema accepts anything that can be a value.
+pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({
+        "type": "object",
+        "propertyNames": { "pattern": IDENTIFIER_PATTERN, "maxLength": 100 },
+        "additionalProperties": { "type": ["boolean", "number", "string", "array", "object"] }
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ mod drift;
 mod proof;
 mod regime;
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 use driftworld_text::NAME_PATTERN;
 use schemars::JsonSchema;
@@ -15,13 +15,8 @@ pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
 pub use proof::{ProvenVariant, ScenarioProof};
 pub use regime::Regime;
 
-use crate::document::Document;
-use crate::error::SpecError;
-use crate::limits::MAX_SCENARIO_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::serde_defaults::is_default;
-use crate::task::TaskSpec;
-use crate::version;
 use crate::version::SCENARIO_VERSION;
 
 /// Maximum number of experiences of one regime.
@@ -227,46 +222,6 @@ impl Scenario {
             proof: None,
             blocks,
         }
-    }
-
-    /// Reads a scenario strictly. `name` is the document's name in messages, usually its path.
-    ///
-    /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
-    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
-        Self::from_json_with(name, text, |_| None)
-    }
-
-    /// Reads a scenario strictly, and checks its variants and their values against the tasks that can be found.
-    ///
-    /// `task` is called once for each task that the scenario names; if it returns `None`, that task is not checked.
-    ///
-    /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
-    ///
-    /// # Example
-    /// ```
-    /// use driftworld_spec::{Scenario, TaskSpec};
-    /// let lamps = TaskSpec::from_json("lamps", r#"{ "name": "lamps", "variants": { "dim": {}, "bright": {} } }"#)?;
-    /// let text = r#"{ "name": "s", "blocks": [{ "type": "learning",
-    ///     "regimes": [{ "task": "lamps", "variant": "brigth", "count": 1 }] }] }"#;
-    /// let error = Scenario::from_json_with("s", text, |name| (name == "lamps").then(|| lamps.clone())).unwrap_err();
-    /// assert!(error.to_string().ends_with("did you mean \"bright\"?"));
-    /// # Ok::<(), driftworld_spec::SpecError>(())
-    /// ```
-    pub fn from_json_with(
-        name: &str,
-        text: &str,
-        task: impl FnMut(&str) -> Option<Arc<TaskSpec>>,
-    ) -> Result<Self, SpecError> {
-        let mut document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
-        document.upgrade(&version::SCENARIO)?;
-        document.fail_on(Self::schema().problems(&document.value))?;
-        let scenario: Self = document.deserialize()?;
-        let mut problems = check::alone(&scenario);
-        problems.extend(check::against_tasks(&scenario, task));
-        document.fail_on(problems)?;
-        Ok(scenario)
     }
 
     /// The scenario as indented JSON with a final newline.

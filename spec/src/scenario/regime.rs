@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
+use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::RegimeDrift;
+use super::drift::RegimeDrift;
 use crate::error::SpecError;
 use crate::task::{TaskSpec, Variant};
 use crate::value::Value;
@@ -30,7 +30,7 @@ pub struct Regime {
     pub variant: String,
     /// Values that override the variant's, by parameter: they make a new variant that the task does not declare.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(schema_with = "values_schema")]
+    #[schemars(schema_with = "super::drift::values_schema")]
     pub values: IndexMap<String, Value>,
     /// The name of the variant with these values in tables and logs; only with `values`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -62,15 +62,6 @@ pub struct Regime {
     /// A drift from the variant to another over the course of the experiences.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<RegimeDrift>,
-}
-
-/// Values by parameter. Only the task knows which values are valid, so the schema accepts anything that can be a value.
-pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    schemars::json_schema!({
-        "type": "object",
-        "propertyNames": { "pattern": IDENTIFIER_PATTERN, "maxLength": 100 },
-        "additionalProperties": { "type": ["boolean", "number", "string", "array", "object"] }
-    })
 }
 
 impl Regime {

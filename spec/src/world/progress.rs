@@ -91,7 +91,7 @@ const MAX_TICKS: u64 = 1 << 52;
 #[schemars(extend("examples" = [{ "stimulus": "AgentCollide", "reward": 1, "destroyed": false }]))]
 pub struct LastEvent {
     /// The stimulus that caused it.
-    pub stimulus: super::Stimulus,
+    pub stimulus: super::stimulus::Stimulus,
     /// The reward paid for it.
     #[schemars(range(min = -1e15, max = 1e15))]
     pub reward: f64,

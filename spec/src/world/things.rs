@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Stimulus;
 use super::fields::{fields, word};
+use super::stimulus::Stimulus;
 use crate::serde_defaults::is_default;
 
 /// Default stimulus of objects with a handle: an interaction.

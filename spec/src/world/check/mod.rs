@@ -140,53 +140,34 @@ impl WorldDraft {
     pub(crate) fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         if self.environment_params.sun_direction == [0.0; 3] {
-            problems.push(Problem::new(
-                "spec/zero-direction",
-                "/environment_params/sun_direction",
-                "[0, 0, 0]",
-                "a direction, such as [0.4, -0.3, 0.8]",
-            ));
+            let pointer = "/environment_params/sun_direction";
+            let expected = "a direction, such as [0.4, -0.3, 0.8]";
+            problems.push(Problem::new("spec/zero-direction", pointer, "[0, 0, 0]", expected));
         }
         if self.environment_params.arena_size().contains(&0.0) {
-            problems.push(
-                Problem::new(
-                    "spec/empty-arena",
-                    "/environment_params/map_size",
-                    "a side of 0 m",
-                    "sides above 0 m",
-                )
-                .advise("or choose a predefined_map from 1 to 4"),
-            );
-        }
-        let [width, height] = self.agent_params.picture_size();
-        let points = u64::from(width) * u64::from(height) * u64::from(self.agent_params.supersampling).pow(2);
-        if points > MAX_POINTS {
-            problems.push(
-                Problem::new(
-                    "spec/too-many-points",
-                    "/agent_params/supersampling",
-                    format!("{points} points for {width} × {height} pixels"),
-                    format!("at most {MAX_POINTS} points"),
-                )
-                .advise("use smaller observations or less supersampling"),
-            );
+            let pointer = "/environment_params/map_size";
+            let problem = Problem::new("spec/empty-arena", pointer, "a side of 0 m", "sides above 0 m");
+            problems.push(problem.advise("or choose a predefined_map from 1 to 4"));
         }
         let agent = &self.agent_params;
-        if (agent.action_model, &agent.actions) == (ActionModel::ByWaypoint, &ActionSpace::DefaultDiscrete) {
-            problems.push(Problem::new(
-                "spec/no-default-actions",
-                "/agent_params/actions",
-                "default_discrete under bywaypoint, whose rows are places",
-                "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}",
-            ));
+        let [width, height] = agent.picture_size();
+        let points = u64::from(width) * u64::from(height) * u64::from(agent.supersampling).pow(2);
+        if points > MAX_POINTS {
+            let found = format!("{points} points for {width} × {height} pixels");
+            let expected = format!("at most {MAX_POINTS} points");
+            let problem = Problem::new("spec/too-many-points", "/agent_params/supersampling", found, expected);
+            problems.push(problem.advise("use smaller observations or less supersampling"));
         }
-        if let Some(energy) = self.agent_params.energy.filter(|energy| energy.start > energy.most) {
-            problems.push(Problem::new(
-                "spec/energy",
-                "/agent_params/energy/start",
-                energy.start.to_string(),
-                format!("at most {}, the most that the agent can have", energy.most),
-            ));
+        if (agent.action_model, &agent.actions) == (ActionModel::ByWaypoint, &ActionSpace::DefaultDiscrete) {
+            let pointer = "/agent_params/actions";
+            let found = "default_discrete under bywaypoint, whose rows are places";
+            let expected = "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}";
+            problems.push(Problem::new("spec/no-default-actions", pointer, found, expected));
+        }
+        if let Some(energy) = agent.energy.filter(|energy| energy.start > energy.most) {
+            let (pointer, found) = ("/agent_params/energy/start", energy.start.to_string());
+            let expected = format!("at most {}, the most that the agent can have", energy.most);
+            problems.push(Problem::new("spec/energy", pointer, found, expected));
         }
         problems.extend(zones::problems(self));
         problems.extend(self.layout_problems());
