@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::regime::Regime;
 use super::usable::is_deployed;
 use super::worlds::{INDEX, seed_of};
-use super::{Lifetime, Regime};
 use crate::log::{ExpStatus, Log};
 use crate::{BlockType, Options};
 
@@ -50,12 +50,11 @@ fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
         .filter(|row| rows.exp_statuses()[*row] == ExpStatus::Complete && rows.block_types()[*row] == BlockType::Train)
 }
 
-/// The training budget of each task of a lifetime, which must have been prepared from this log with these options. Rows of a drift
-/// count for its nearer end.
-pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTreeMap<String, Budget> {
+/// The training budget of each task of a lifetime with these regimes, which must have been prepared from this log with these
+/// options. Rows of a drift count for its nearer end.
+pub(crate) fn budgets(log: &Log, regimes: &[Regime], options: &Options) -> BTreeMap<String, Budget> {
     let mut learned: BTreeMap<&str, (Vec<usize>, usize)> = BTreeMap::new();
-    let regimes = lifetime.regimes().iter();
-    for regime in regimes.filter(|regime| regime.block_type == BlockType::Train) {
+    for regime in regimes.iter().filter(|regime| regime.block_type == BlockType::Train) {
         for (index, row) in regime.rows.iter().enumerate() {
             learned.entry(task_learned(regime, index)).or_default().0.push(*row);
         }

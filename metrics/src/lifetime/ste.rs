@@ -9,7 +9,6 @@ use super::budget::Budget;
 use super::regime::{self, Regime};
 use super::usable::{complete_rows, is_deployed};
 use crate::log::{Log, read_log};
-use crate::results::agent_of;
 use crate::{BlockType, MetricsError, Options, VariantMode};
 
 /// The log of a single-task expert, which trains exactly one task, apart from training before deployment. Clones share the log.
@@ -189,7 +188,7 @@ fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, Metr
     regimes.retain(|regime| !regime.is_empty());
     Ok(SteRun {
         name: expert.log.run_id.clone(),
-        agent: agent_of(&expert.log),
+        agent: expert.log.scenario_info.agent(),
         budget: Budget::of_expert(&expert.log),
         regimes,
     })

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use indexmap::IndexSet;
 
-use super::{Lifetime, Regime};
+use super::regime::Regime;
 use crate::{Log, TaskParams};
 
 /// Column with the index of a row's world for its variant and seed.
@@ -27,8 +27,8 @@ pub(super) fn seed_of(params: &TaskParams) -> String {
     params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }
 
-/// The world of each row of each regime, in order; `None` if it is not logged. The lifetime must have been prepared from this log.
-pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> {
+/// The world of each row of each regime, in order; `None` if it is not logged. The regimes must have been prepared from this log.
+pub(crate) fn worlds(log: &Log, regimes: &[Regime]) -> Vec<Vec<Option<World>>> {
     let rows = &log.rows;
     let params = rows.task_params();
     let mut seeds: IndexSet<String> = IndexSet::new();
@@ -51,5 +51,5 @@ pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> 
         })
     };
     let of_regime = |regime: &Regime| regime.rows.iter().map(|row| world(*row)).collect();
-    lifetime.regimes().iter().map(of_regime).collect()
+    regimes.iter().map(of_regime).collect()
 }

@@ -90,9 +90,12 @@ impl ScenarioInfo {
             extra,
         })
     }
-}
 
-impl ScenarioInfo {
+    /// The agent's name, if it is logged.
+    pub(crate) fn agent(&self) -> Option<String> {
+        Some(self.extra.get("agent")?.as_str()?.to_owned())
+    }
+
     /// Whether a block of our own scenario may skip experience numbers here: some of its regimes have a budget of decisions, and
     /// either a regime ends here, or regimes are mixed, so that any may have ended.
     pub(super) fn leaves_numbers_unused(&self, block: u64, regime_ends: bool) -> bool {

@@ -40,10 +40,10 @@ pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> 
     if options.variant_mode == VariantMode::Agnostic {
         return IndexMap::new();
     }
-    let budgets = budgets(log, lifetime, options);
+    let budgets = budgets(log, lifetime.regimes(), options);
     let no_budget = Budget::default();
     let before = budgets.values().map(|own| own.before).sum();
-    let agent = agent_of(log);
+    let agent = log.scenario_info.agent();
     let of_task = |task: &String| {
         let own = budgets.get(task).unwrap_or(&no_budget);
         let runs = lifetime.experts_of(task).iter();
@@ -52,11 +52,6 @@ pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> 
         (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
     };
     lifetime.tasks().iter().filter_map(of_task).collect()
-}
-
-/// The agent's name in a log.
-pub(crate) fn agent_of(log: &Log) -> Option<String> {
-    Some(log.scenario_info.extra.get("agent")?.as_str()?.to_owned())
 }
 
 fn fit(run: &SteRun, agent: Option<&String>, own: &Budget, before: usize) -> ExpertFit {

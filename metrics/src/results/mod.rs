@@ -20,7 +20,7 @@ pub(crate) use as_logged::as_logged;
 pub(crate) use curves::curves;
 pub use curves::{CurvePoint, EvaluationCurve};
 pub use expert_fit::{BesideExpert, ExpertFit};
-pub(crate) use expert_fit::{agent_of, expert_fits, incomparable_experts};
+pub(crate) use expert_fit::{expert_fits, incomparable_experts};
 pub use files::{Settings, save_all};
 pub use headline::{Direction, Headline};
 pub(crate) use lifetime_metrics::parts;

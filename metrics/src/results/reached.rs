@@ -130,7 +130,7 @@ impl Reached {
 
 /// The evaluation results of each task, in the lifetime's order; the list is empty for tasks without an evaluation.
 pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Reached> {
-    let worlds = worlds(log, lifetime);
+    let worlds = worlds(log, lifetime.regimes());
     let mut found = IndexMap::new();
     for task in lifetime.tasks() {
         let mut evaluations = Vec::new();

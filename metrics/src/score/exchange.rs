@@ -36,7 +36,7 @@ enum Unit {
 impl<'a> Evaluations<'a> {
     /// Collects the evaluations of a lifetime and of the log that it was prepared from.
     pub(super) fn of(log: &Log, lifetime: &'a Lifetime) -> Self {
-        let worlds = worlds(log, lifetime);
+        let worlds = worlds(log, lifetime.regimes());
         let is_counted = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
         let assessed: Vec<&Regime> = lifetime.regimes().iter().filter(is_counted).collect();
         let mut regimes = Vec::new();

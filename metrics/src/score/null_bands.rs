@@ -71,7 +71,7 @@ pub(super) fn null_bands(log: &Log, lifetime: &Lifetime, options: &Options, term
 
 /// The standard error, if known, of each evaluation that counts, by its regime number.
 fn errors(log: &Log, lifetime: &Lifetime) -> Vec<(usize, Option<f64>)> {
-    let worlds = worlds(log, lifetime);
+    let worlds = worlds(log, lifetime.regimes());
     let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
     let evaluated = lifetime.regimes().iter().filter(counts);
     let error = |regime: &Regime| (regime.regime_num, performance_error(regime, &worlds[regime.regime_num]));
