@@ -5,7 +5,8 @@ use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
 use driftworld_text::when;
 use maud::{Markup, html};
 
-use super::{breakable, count, described, metric_table, number, pair_table, reached, task_table, warnings};
+use super::pieces::{breakable, calm, count, described, number, warnings};
+use super::{metric_table, pair_table, reached, task_table};
 use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::picture::{Drawing, SheetRow};
@@ -88,7 +89,7 @@ impl Chapter {
         let sleep_note = sleep_note(lifetime);
         let blocks = format!(
             "Each block of the lifetime from left to right.{sleep_note} {}",
-            super::calm(&options.distance_note)
+            calm(&options.distance_note)
         );
         let lines = when(options.figures.show_eval_lines, || ", joined by lines".to_owned());
         let line_note = if options.smoothed {
@@ -145,7 +146,7 @@ impl Chapter {
 fn worlds(rows: &Result<Vec<SheetRow>, String>) -> Result<Markup, ReportError> {
     let rows = match rows {
         Ok(rows) => rows,
-        Err(why) => return Ok(html! { @if !why.is_empty() { p.note { (super::calm(why)) } } }),
+        Err(why) => return Ok(html! { @if !why.is_empty() { p.note { (calm(why)) } } }),
     };
     let mut figures = Vec::new();
     for SheetRow { title, words, pictures } in rows {
@@ -156,7 +157,7 @@ fn worlds(rows: &Result<Vec<SheetRow>, String>) -> Result<Markup, ReportError> {
                     img src=(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
                         alt=(format!("a world of {}, {from}", shown(title)));
                 }
-                figcaption { b { (breakable(&shown(title))) } " " (super::calm(words)) }
+                figcaption { b { (breakable(&shown(title))) } " " (calm(words)) }
             }
         });
     }

@@ -6,8 +6,8 @@ use driftworld_metrics::{AGREEING_PART, LARGEST_P, Lifetime, LifetimeMetrics, NU
 use driftworld_text::capitalized;
 use maud::{Markup, html};
 
+use super::pieces::{described, number};
 use super::verdict::{self, Verdict};
-use super::{described, number};
 use crate::ReportError;
 use crate::figure::{strip, thinned_count};
 use crate::words::{note_shown, shown};

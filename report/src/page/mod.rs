@@ -5,12 +5,12 @@ mod chapter;
 mod metric_table;
 mod overall;
 mod pair_table;
+mod pieces;
 mod reached;
 mod task_table;
 mod verdict;
 
 use driftworld_metrics::{BootstrapOptions, RepeatedMetric};
-use driftworld_text::rounded;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
@@ -20,6 +20,7 @@ pub use overall::Comparison;
 use crate::ReportError;
 use crate::figure::dark_rules;
 use crate::words::shown;
+use pieces::{calm, warnings};
 
 /// Maximum number of lifetimes on one page.
 pub const MAX_LIFETIMES: usize = 40;
@@ -59,21 +60,17 @@ impl Report {
     /// # Errors
     /// [`ReportError::TooManyLifetimes`] for more than [`MAX_LIFETIMES`].
     pub fn to_html(&self) -> Result<String, ReportError> {
-        if self.chapters.len() > MAX_LIFETIMES {
-            return Err(ReportError::TooManyLifetimes {
-                found: self.chapters.len(),
-                limit: MAX_LIFETIMES,
-            });
+        let (found, limit) = (self.chapters.len(), MAX_LIFETIMES);
+        if found > limit {
+            return Err(ReportError::TooManyLifetimes { found, limit });
         }
         let title = match (&self.title, &self.chapters[..]) {
             (Some(title), _) => shown(title),
             (None, [chapter]) => chapter.name.clone(),
             (None, chapters) => format!("{} lifetimes", chapters.len()),
         };
-        let style = format!(
-            "{STYLE}@media screen and (prefers-color-scheme:dark){{{}}}",
-            dark_rules()
-        );
+        let dark = dark_rules();
+        let style = format!("{STYLE}@media screen and (prefers-color-scheme:dark){{{dark}}}");
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -140,33 +137,6 @@ impl Report {
     }
 }
 
-/// The list of warnings, which a reader should see before the numbers.
-fn warnings(warnings: &[String]) -> Markup {
-    /// Maximum number of warnings shown.
-    const MAX_WARNINGS: usize = 50;
-    html! {
-        @if !warnings.is_empty() {
-            ul.warnings aria-label="Warnings" {
-                @for warning in warnings.iter().take(MAX_WARNINGS) {
-                    li { "⚠ Warning: " (calm(warning)) }
-                }
-                @if warnings.len() > MAX_WARNINGS { li { "⚠ and " (warnings.len() - MAX_WARNINGS) " more warnings" } }
-            }
-        }
-    }
-}
-
-/// Inlines an SVG with its alternative text; a class may restrict it to wide or narrow pages.
-fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
-    let head = html! { title { (alt) } }.into_string();
-    let class = class.map_or(String::new(), |class| format!("class=\"{class}\" "));
-    let svg = svg.replacen("<svg ", &format!("<svg {class}role=\"img\" "), 1);
-    PreEscaped(match svg.find('>') {
-        Some(end) => format!("{}{head}{}", &svg[..=end], &svg[end + 1..]),
-        None => svg,
-    })
-}
-
 /// The table of options, with notes on how the metrics were computed.
 fn options_table(options: &Value, command: Option<&str>) -> Markup {
     let rows = options.as_object().into_iter().flatten();
@@ -213,54 +183,9 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// A name that may be broken between its parts.
-fn breakable(name: &str) -> Markup {
-    html! { @for part in name.split_inclusive(['_', '#', '-']) { (part) wbr; } }
-}
-
-/// Sanitises a sentence from outside: control characters become spaces, and long text is cut. The limit is larger than the one
-/// for names.
-fn calm(text: &str) -> String {
-    /// Maximum number of characters shown.
-    const MAX_CHARS: usize = 600;
-    let mut calm: String = text
-        .chars()
-        .take(MAX_CHARS)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    if text.chars().nth(MAX_CHARS).is_some() {
-        calm.push('…');
-    }
-    calm
-}
-
-/// A number in a table: about four digits, with a typographic minus sign.
-fn number(value: f64) -> String {
-    let digits = match value.abs() {
-        size if size >= 1e7 => return format!("{value:.3e}").replace('-', "−"),
-        size if size >= 1000.0 => 0,
-        size if size >= 100.0 => 1,
-        size if size >= 10.0 => 2,
-        _ => 3,
-    };
-    rounded(value, digits).replace('-', "−")
-}
-
-/// A count with its thousands separated by narrow spaces.
-fn count(value: usize) -> String {
-    let digits = value.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
+    use super::pieces::{count, number};
     use super::*;
 
     #[test]

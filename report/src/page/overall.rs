@@ -9,8 +9,9 @@ use driftworld_text::short;
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
+use super::pieces::{calm, count, number};
 use super::verdict::{self, Verdict, pill};
-use super::{calm, count, metric_table, number, reached};
+use super::{metric_table, reached};
 use crate::words::shown;
 
 /// The comparison of an agent with another one.

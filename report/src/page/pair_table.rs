@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use driftworld_metrics::{LifetimeMetrics, SummaryRow};
 use maud::{Markup, html};
 
+use super::pieces::{breakable, number};
 use super::verdict::{self, Verdict};
-use super::{breakable, number};
 use crate::words::shown;
 
 /// Maximum number of tasks in a table; the metrics files have all of them.

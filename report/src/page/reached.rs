@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use driftworld_metrics::{EvaluationCell, EvaluationCurve, LEARNED_SHARE, LifetimeMetrics, Reached};
 use maud::{Markup, html};
 
-use super::number;
+use super::pieces::number;
 use super::verdict::{Verdict, pill};
 use crate::words::shown;
 

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
-use super::{count, number, verdict};
+use super::pieces::{count, number};
+use super::verdict;
 use crate::words::shown;
 
 /// Maximum number of rows shown; the metrics files have all tasks.
