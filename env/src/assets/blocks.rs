@@ -1,6 +1,7 @@
 //! Meshes for the CPU renderer: blocks of triangles, with one array per coordinate.
 
-use super::{Mesh, Paint, Part};
+use super::asset::{Paint, Part};
+use super::mesh::Mesh;
 
 /// Triangles in a block: the number of lanes of the renderer's widest vectors.
 pub(crate) const BLOCK: usize = 16;

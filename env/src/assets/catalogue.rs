@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use driftworld_spec::{Classes, Model, Models, Style};
 
-use super::library::{Library, LibraryModel};
+use super::library::{Library, LibraryModel, key};
 use super::{Asset, Lettering, asset_in, builtin, sign};
 
 /// The number in class segmentation shared by all classes that are not in the catalogue; they are drawn as placeholders.
@@ -151,16 +151,6 @@ impl Models for Catalogue {
         names.extend(own);
         names
     }
-}
-
-/// Normalises class and model for lookup.
-pub(super) fn key(class: &str, model: &str) -> (String, String) {
-    let model = model.trim();
-    let model = match model.parse::<u32>() {
-        Ok(number) => number.to_string(),
-        Err(_) => model.to_lowercase(),
-    };
-    (class.trim().to_lowercase(), model)
 }
 
 #[cfg(test)]

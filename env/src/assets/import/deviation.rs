@@ -5,8 +5,6 @@ use rapier3d::parry::partitioning::{BvhNode, TraversalAction};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::TriMesh;
 
-use super::simplify::{point, used};
-
 /// Maximum number of triangle tests per level of detail: a second or two of work. Most models need a hundredth of that. But if
 /// thousands of large triangles intersect each other, bounding boxes do not help, and every point would test all of them.
 const MAX_TRIANGLE_TESTS: u64 = 30_000_000;
@@ -124,6 +122,19 @@ fn evenly_spread(count: usize) -> impl Iterator<Item = usize> {
     let first = ((count as f64 * 0.618_034) as usize).max(1);
     let step = (first..=first + count).find(is_coprime).unwrap_or(1);
     (0..count).map(move |number| (number as u64 * step as u64 % count as u64) as usize)
+}
+
+/// The corners that triangles use, each once.
+pub(super) fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut used = triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    used
+}
+
+pub(super) fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
+    let [x, y, z] = corners[corner as usize];
+    Vector::new(x, y, z)
 }
 
 #[cfg(test)]

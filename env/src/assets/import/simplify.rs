@@ -4,7 +4,7 @@
 use meshopt::SimplifyOptions;
 use rapier3d::math::Vector;
 
-use super::deviation::{Deviation, TestBudget};
+use super::deviation::{Deviation, TestBudget, point, used};
 use crate::assets::library::{Detail, MAX_MODEL_LEVELS};
 
 /// Minimum number of triangles worth simplifying: a few blocks of the renderer.
@@ -117,19 +117,6 @@ fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>],
         error = surface.farthest(&measured, error, most, &mut budget)?;
     }
     (error <= most).then_some(error)
-}
-
-/// The corners that triangles use, each once.
-pub(super) fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
-    let mut used = triangles.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
-    used
-}
-
-pub(super) fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
-    let [x, y, z] = corners[corner as usize];
-    Vector::new(x, y, z)
 }
 
 #[cfg(test)]

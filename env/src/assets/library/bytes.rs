@@ -7,7 +7,7 @@
 use sha2::{Digest, Sha256};
 
 use super::model::LibraryModel;
-use super::reader::{Reader, bad};
+use super::reader::{MAX_SMALL_CORNERS, Reader, bad};
 use super::{Library, MAX_LIBRARY_MODELS};
 use crate::EnvError;
 use crate::assets::{ColliderShape, Paint};
@@ -16,8 +16,6 @@ const MAGIC: &[u8; 8] = b"DRIFTLIB";
 const VERSION: u32 = 1;
 /// Bytes of the header.
 const HEADER_BYTES: usize = 8 + 4 + 8 + 32;
-/// Maximum number of corners of a model whose triangles are stored as 16-bit indices.
-pub(super) const MAX_SMALL_CORNERS: usize = 1 << 16;
 /// Minimum size of a model in bytes.
 const MIN_MODEL_BYTES: usize = 32;
 

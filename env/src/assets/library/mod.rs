@@ -12,7 +12,6 @@ pub(crate) use model::MAX_HULL_POINTS;
 use std::collections::BTreeSet;
 
 use crate::EnvError;
-use crate::assets::catalogue::key;
 
 /// Maximum number of models in a library.
 pub const MAX_LIBRARY_MODELS: usize = 10_000;
@@ -73,4 +72,14 @@ impl Library {
     pub fn models(&self) -> &[LibraryModel] {
         &self.models
     }
+}
+
+/// Normalises class and model for lookup.
+pub(super) fn key(class: &str, model: &str) -> (String, String) {
+    let model = model.trim();
+    let model = match model.parse::<u32>() {
+        Ok(number) => number.to_string(),
+        Err(_) => model.to_lowercase(),
+    };
+    (class.trim().to_lowercase(), model)
 }

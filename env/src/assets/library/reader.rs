@@ -1,10 +1,12 @@
 //! Parses models from untrusted bytes. Never panics, and allocates only what the remaining bytes can fill.
 
 use super::MAX_HULL_POINTS;
-use super::bytes::MAX_SMALL_CORNERS;
 use super::model::{Detail, LibraryModel};
 use crate::EnvError;
 use crate::assets::{ColliderShape, Paint};
+
+/// Maximum number of corners of a model whose triangles are stored as 16-bit indices.
+pub(super) const MAX_SMALL_CORNERS: usize = 1 << 16;
 
 /// A position in untrusted bytes.
 pub(super) struct Reader<'a> {
