@@ -9,6 +9,7 @@ use driftworld_spec::World;
 use rayon::prelude::*;
 
 pub use grid::{NUM_HEADINGS, StateGrid};
+pub use walker::NUM_MACRO_ACTIONS;
 
 use crate::EnvError;
 use crate::assets::Catalogue;
@@ -19,9 +20,6 @@ pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
 
 /// Maximum duration of a macro action in seconds.
 pub const MAX_MACRO_SECONDS: f64 = 60.0;
-
-/// Number of macro actions: ahead, ahead and left, ahead and right, left, right, and interact.
-pub const NUM_MACRO_ACTIONS: usize = 6;
 
 /// Settings for turning a world into a finite one.
 #[derive(Clone, Debug)]

@@ -2,11 +2,13 @@
 
 use driftworld_spec::{ActionModel, World};
 
-use super::NUM_MACRO_ACTIONS;
 use crate::EnvError;
 use crate::agents::in_space;
 use crate::assets::Catalogue;
 use crate::sim::{Environment, Snapshot, Step};
+
+/// Number of macro actions: ahead, ahead and left, ahead and right, left, right, and interact.
+pub const NUM_MACRO_ACTIONS: usize = 6;
 
 /// Result of one macro action.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use driftworld_spec::{Object, World, WorldDraft};
 
-use super::space::{Kind, StateSpace, display_name, kind};
+use super::space::{Kind, StateSpace, count, display_name, kind};
 use crate::sim::Difference;
 
 /// Two worlds, each reduced to the objects that have a counterpart. Objects with the same index are counterparts, in the order
@@ -103,13 +103,4 @@ impl Paired {
             .or_else(energy)
             .or_else(|| a.objects.iter().zip(&b.objects).enumerate().find_map(object_difference))
     }
-}
-
-/// Number of objects of each kind in a world.
-pub(super) fn count(world: &World) -> BTreeMap<Kind, usize> {
-    let mut counts = BTreeMap::new();
-    for object in &world.objects {
-        *counts.entry(kind(object)).or_insert(0) += 1;
-    }
-    counts
 }

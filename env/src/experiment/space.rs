@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use driftworld_spec::{ActionModel, AgentParams, World};
 
-use super::matching::count;
 use crate::sim::{Action, Difference, Intent};
 
 /// The kind of an object in the state space: its class, and the tag that rules use.
@@ -13,6 +12,15 @@ pub(super) type Kind = (String, Option<String>);
 /// The kind of an object.
 pub(super) fn kind(object: &driftworld_spec::Object) -> Kind {
     (object.class.clone(), object.tag.clone())
+}
+
+/// Number of objects of each kind in a world.
+pub(super) fn count(world: &World) -> BTreeMap<Kind, usize> {
+    let mut counts = BTreeMap::new();
+    for object in &world.objects {
+        *counts.entry(kind(object)).or_insert(0) += 1;
+    }
+    counts
 }
 
 /// A kind's name: its tag if it has one, otherwise its class.

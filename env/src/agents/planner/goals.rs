@@ -1,10 +1,9 @@
 //! Lists the [`Goal`]s in a world with doors and things: those that pay, then those that end the episode in success. `plan.rs`
 //! finds the subgoals that come first.
 
-use driftworld_spec::{EndCondition, Object, Stimulus};
+use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Stimulus, World};
 
 use super::super::tiers::{reacts_to, wanted};
-use super::plan::{can_interact, usable_stimulus};
 use crate::sim::SimRef;
 
 /// Something the agent wants to achieve.
@@ -140,6 +139,32 @@ fn due_goals<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>> {
         .copied()
         .filter(|goal| is_due(&world.objects[goal.object() as usize]));
     due.chain(first).collect()
+}
+
+/// Whether the agent can interact at all.
+pub(super) fn can_interact(world: &World) -> bool {
+    let agent = &world.agent_params;
+    let has_row = match &agent.actions {
+        ActionSpace::Discrete(table) => {
+            agent.action_model == ActionModel::OnRails || table.iter().any(|row| row[2] > 0.5)
+        }
+        _ => true,
+    };
+    agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
+}
+
+/// The stimulus in a list that the agent can cause at an object; an interaction if possible.
+pub(super) fn usable_stimulus(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
+    let has_range = world.objects[object as usize].range_stimulus_distance > 0.0;
+    let can = |stimulus: &Stimulus| match stimulus {
+        Stimulus::AgentInteract => can_interact(world),
+        Stimulus::AgentCollide => true,
+        Stimulus::AgentInRange => has_range,
+    };
+    let known = [Stimulus::AgentInteract, Stimulus::AgentCollide, Stimulus::AgentInRange];
+    known
+        .into_iter()
+        .find(|stimulus| stimuli.contains(stimulus) && can(stimulus))
 }
 
 /// The stimulus that opens a door, sets off a switch or picks up a thing, if the agent can cause it.

@@ -1,10 +1,10 @@
 //! [`Plan`] chooses the next subgoal: which door to open, and which key or switch comes first. `subgoal.rs` carries it out.
 //! `spending.rs` chooses the doors on which to spend single-use keys.
 
-use driftworld_spec::{ActionModel, ActionSpace, Object, Stimulus, SwitchAction, World, Zone};
+use driftworld_spec::{Object, SwitchAction, Zone};
 
 use super::floor::{Floor, Room};
-use super::goals::{Goal, goal_at};
+use super::goals::{Goal, can_interact, goal_at, usable_stimulus};
 use super::subgoal::{Act, Subgoal};
 use crate::sim::SimRef;
 
@@ -362,30 +362,4 @@ impl<'a> Plan<'a> {
         let hands_can_be_emptied = !hands_are_full || can_interact(self.sim.world);
         hands_can_be_emptied.then_some(subgoal)
     }
-}
-
-/// Whether the agent can interact at all.
-pub(super) fn can_interact(world: &World) -> bool {
-    let agent = &world.agent_params;
-    let has_row = match &agent.actions {
-        ActionSpace::Discrete(table) => {
-            agent.action_model == ActionModel::OnRails || table.iter().any(|row| row[2] > 0.5)
-        }
-        _ => true,
-    };
-    agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
-}
-
-/// The stimulus in a list that the agent can cause at an object; an interaction if possible.
-pub(super) fn usable_stimulus(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
-    let has_range = world.objects[object as usize].range_stimulus_distance > 0.0;
-    let can = |stimulus: &Stimulus| match stimulus {
-        Stimulus::AgentInteract => can_interact(world),
-        Stimulus::AgentCollide => true,
-        Stimulus::AgentInRange => has_range,
-    };
-    let known = [Stimulus::AgentInteract, Stimulus::AgentCollide, Stimulus::AgentInRange];
-    known
-        .into_iter()
-        .find(|stimulus| stimuli.contains(stimulus) && can(stimulus))
 }

@@ -3,9 +3,8 @@
 use driftworld_spec::Stimulus;
 
 use super::floor::{Floor, Room};
-use super::goals::activating_stimulus;
+use super::goals::{activating_stimulus, can_interact};
 use super::ground_shape::GroundShape;
-use super::plan::can_interact;
 use super::ways::{Delivery, is_to_collect};
 use crate::agents::steering::{angle_to, distance, is_narrow, seconds, step_to};
 use crate::sim::{SimRef, put_down_place, reacting_object};

@@ -1,7 +1,9 @@
 //! Linear Sarsa(λ): the value of an action is a weighted sum of the features.
 
-use super::LEARNING_RATE;
 use super::eye::FEATURES;
+
+/// Learning rate.
+const LEARNING_RATE: f32 = 0.02;
 
 /// Features of an image.
 pub(super) type Features = [f32; FEATURES];

@@ -23,8 +23,6 @@ const ACTIONS: [[f64; 3]; 5] = [
 
 /// Seconds of simulated time per action, rounded to whole steps.
 const ACTION_SECONDS: f64 = 0.2;
-/// Learning rate.
-const LEARNING_RATE: f32 = 0.02;
 /// Discount per action.
 const DISCOUNT: f32 = 0.93;
 /// Trace decay λ.
