@@ -7,6 +7,9 @@ use crate::combined::sketch::ObjectFeatures;
 /// Number of pairs of kinds in a thread's cache; a power of 2.
 const CACHE_SIZE: usize = 2048;
 
+/// Difference in reward that counts as 1.
+pub(super) const REWARD_UNIT: f64 = 100.0;
+
 /// Weight of the reward in the cost of a match: just enough to break ties.
 const TIE_BREAK: f64 = 1e-9;
 
@@ -44,7 +47,7 @@ impl KindDistance {
             color: a.color_distance(b),
             model: a.model.distance(&b.model),
         };
-        let pays = parts.reward / super::matching::REWARD_UNIT + parts.odds;
+        let pays = parts.reward / REWARD_UNIT + parts.odds;
         Self {
             cost: parts.motion + parts.body + parts.paid_for + parts.color + parts.model + TIE_BREAK * pays.min(1.0),
             ..parts

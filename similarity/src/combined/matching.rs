@@ -7,14 +7,10 @@ use crate::assignment::{Assignment, MAX_ASSIGNED};
 #[cfg(test)]
 use crate::combined::kinds::KindDistance;
 use crate::combined::kinds::Kinds;
-use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
 /// Distance between objects, in metres, that counts as 1.
 pub(super) const POSITION_UNIT: f64 = 10.0;
-
-/// Difference in reward that counts as 1.
-pub(super) const REWARD_UNIT: f64 = 100.0;
 
 impl ObjectFeatures {
     pub(super) fn metres(&self, other: &Self) -> f64 {
@@ -44,6 +40,17 @@ impl ObjectFeatures {
             // The relative difference of scales, which are above 0.
             + (self.scale - other.scale).abs() * self.per_scale.min(other.per_scale)
     }
+}
+
+pub(super) fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    (x * x + y * y).sqrt()
+}
+
+/// The smaller angle between two headings in `0..360`.
+pub(super) fn turn(a: f64, b: f64) -> f64 {
+    let turn = (a - b).abs();
+    turn.min(360.0 - turn)
 }
 
 #[derive(Default)]

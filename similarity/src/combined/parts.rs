@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use driftworld_spec::Comparison;
 
-use crate::combined::kinds::Kinds;
-use crate::combined::matching::{POSITION_UNIT, REWARD_UNIT, each_match};
+use crate::combined::kinds::{Kinds, REWARD_UNIT};
+use crate::combined::matching::{POSITION_UNIT, each_match, length, turn};
 use crate::combined::sketch::{ObjectFeatures, Sketch};
 use crate::combined::weighted_distance::Part;
 use crate::combined::weights::Weights;
@@ -103,12 +103,6 @@ impl Objects {
         self.color += distance.color;
         self.model += distance.model;
     }
-}
-
-/// The smaller angle between two headings in `0..360`.
-pub(super) fn turn(a: f64, b: f64) -> f64 {
-    let turn = (a - b).abs();
-    turn.min(360.0 - turn)
 }
 
 fn state(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
@@ -210,9 +204,4 @@ fn add_unnormalised(comparison: Comparison, number: f64, sink: &mut impl Sink) {
 fn relative(comparison: Comparison, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
     sink.add(comparison, raw, relative_difference(a, b));
-}
-
-pub(super) fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [x, y] = [a[0] - b[0], a[1] - b[1]];
-    (x * x + y * y).sqrt()
 }
