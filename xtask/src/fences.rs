@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::process::{Result, Workspace};
+use crate::process::{Result, Workspace, metadata};
 use crate::sources::{Sources, extension, is_name_char, is_test_file, shipped_lines};
 use crate::stage::Outcome;
-use crate::{metadata, rooms, unreached};
+use crate::{rooms, unreached};
 
 const MAP: &str = "ARCHITECTURE.md";
 const UNSAFE: &str = "docs/unsafe.md";

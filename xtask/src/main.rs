@@ -24,8 +24,7 @@ use std::env;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use process::{Result, Workspace, output};
-use serde_json::Value;
+use process::{Result, Workspace, metadata};
 use stage::Stage;
 use stages::STAGES;
 
@@ -113,13 +112,6 @@ fn workspace(is_full: bool) -> Result<Workspace> {
         target: folder("target_directory"),
         is_full,
     })
-}
-
-/// Cargo's metadata of the current folder's workspace. Dependencies are not resolved, so no network is needed.
-fn metadata() -> Result<Value> {
-    let mut cargo = std::process::Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
-    serde_json::from_str(&output(cargo)?).map_err(|error| format!("`cargo metadata` was not understood: {error}"))
 }
 
 #[cfg(test)]

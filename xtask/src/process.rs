@@ -4,6 +4,8 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
+use serde_json::Value;
+
 /// A result with a message as its error, because errors are only printed and end the command.
 pub(crate) type Result<T = ()> = std::result::Result<T, String>;
 
@@ -95,6 +97,13 @@ fn shown(command: &Command) -> String {
 /// Turns an error about a file into a sentence.
 pub(crate) fn about(path: &Path) -> impl Fn(std::io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
+}
+
+/// Cargo's metadata of the current folder's workspace. Dependencies are not resolved, so no network is needed.
+pub(crate) fn metadata() -> Result<Value> {
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
+    serde_json::from_str(&output(cargo)?).map_err(|error| format!("`cargo metadata` was not understood: {error}"))
 }
 
 #[cfg(test)]
