@@ -35,7 +35,7 @@ await build({
 });
 for (const name of ["index.html", "icon.svg"]) cpSync(join(here, name), join(out, name));
 
-const packed = (bytes, name) => brotliCompressSync(bytes, {
+const compress = (bytes, name) => brotliCompressSync(bytes, {
   params: {
     [constants.BROTLI_PARAM_QUALITY]: 11,
     [constants.BROTLI_PARAM_LGWIN]: 24,
@@ -51,19 +51,19 @@ const ask = await start(await WebAssembly.compile(simulator));
 writeFileSync(join(out, "tasks.json"), JSON.stringify(JSON.parse(ask({ call: "tasks" }).json).ok));
 
 let sum = 0;
-const tell = (name, raw, small) => console.log(`${name.padEnd(20)} ${String(raw).padStart(9)} bytes, ${String(small).padStart(9)} by brotli`);
+const report = (name, raw, compressed) => console.log(`${name.padEnd(20)} ${String(raw).padStart(9)} bytes, ${String(compressed).padStart(9)} by brotli`);
 for (const name of readdirSync(out).sort()) {
   const bytes = readFileSync(join(out, name));
-  const small = packed(bytes, name).length;
-  sum += small;
-  tell(name, bytes.length, small);
+  const size = compress(bytes, name).length;
+  sum += size;
+  report(name, bytes.length, size);
 }
-const small = packed(simulator, "driftworld.wasm");
-writeFileSync(join(out, "driftworld.wasm.br"), small);
-// For browsers that cannot unpack brotli themselves.
+const compressed = compress(simulator, "driftworld.wasm");
+writeFileSync(join(out, "driftworld.wasm.br"), compressed);
+// For browsers that cannot decompress brotli.
 writeFileSync(join(out, "driftworld.wasm.gz"), gzipSync(simulator, { level: 9 }));
-sum += small.length;
-tell("driftworld.wasm", simulator.length, small.length);
+sum += compressed.length;
+report("driftworld.wasm", simulator.length, compressed.length);
 
 // Trained networks, fetched when needed.
 const networks = join(here, "..", "examples", "networks");

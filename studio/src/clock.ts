@@ -1,8 +1,8 @@
-// Calls a function at a given rate, never twice at once.
+// Calls a function at a given rate, and never before the previous call has ended.
 
 import { useEffect, useRef } from "preact/hooks";
 
-/** Runs `tick` at this rate while `isRunning`; a slow tick delays the next. An error in a tick is passed to `failed` and stops the clock. */
+/** Calls `tick` at this rate while `isRunning`; a slow tick delays the next. An error in a tick stops the clock and is passed to `failed`. */
 export function useClock(isRunning: boolean, perSecond: number, tick: () => Promise<void>, failed: (error: unknown) => void): void {
   const latest = useRef({ tick, failed });
   latest.current = { tick, failed };
@@ -11,9 +11,9 @@ export function useClock(isRunning: boolean, perSecond: number, tick: () => Prom
     let isOver = false;
     let request = 0;
     let due = performance.now();
-    const turn = async (now: number) => {
+    const onFrame = async (now: number) => {
       if (isOver) return;
-      // Half a frame early is on time: screens and worlds have different rates.
+      // A tick may be half a frame early, because screens and worlds have different rates.
       if (now >= due - 8) {
         due = Math.max(due + 1000 / perSecond, now - 100);
         try {
@@ -23,9 +23,9 @@ export function useClock(isRunning: boolean, perSecond: number, tick: () => Prom
           return;
         }
       }
-      if (!isOver) request = requestAnimationFrame((next) => void turn(next));
+      if (!isOver) request = requestAnimationFrame((next) => void onFrame(next));
     };
-    request = requestAnimationFrame((now) => void turn(now));
+    request = requestAnimationFrame((now) => void onFrame(now));
     return () => {
       isOver = true;
       cancelAnimationFrame(request);

@@ -1,4 +1,4 @@
-// Shell commands and Python programs equivalent to actions on the page.
+// Writes shell commands and Python programs that do the same as actions on the page.
 
 import type { Action, ActionSpace } from "./engine.ts";
 
@@ -16,7 +16,7 @@ export interface Recipe {
   python: string;
 }
 
-/** A word, quoted for a POSIX shell if necessary. */
+/** Quotes a word for a POSIX shell if necessary. */
 export function shellWord(word: string): string {
   return /^[\w@%+=:,./-]+$/.test(word) || /^[\w./-]+#[\w-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }
@@ -31,7 +31,7 @@ const where = ({ seed, index }: Subject): string[] =>
 
 const MAKE = "import driftworld\nimport gymnasium\n\n";
 
-/** The world in an environment, ready for the first action. */
+/** Python that makes an environment and resets it to the world. */
 function environment(subject: Subject, actions: string | null): string {
   const options = actions ? `, actions="${actions}"` : "";
   const reset = `env.reset(seed=${subject.seed}, options={"index": ${subject.index}})`;
@@ -108,7 +108,7 @@ export function runs(actions: Action[]): { action: Action; times: number }[] {
 
 const STEP = "        observation, reward, terminated, truncated, info = env.step(action)\n        total += reward\n";
 
-/** An episode action by action: `console` reads it from a pipe, Python steps through it. */
+/** An episode, action by action: `console` reads the actions from a pipe, Python takes them in a loop. */
 export function episode(subject: Subject, space: Pick<ActionSpace, "kind">, actions: Action[]): Recipe {
   const counted = runs(actions);
   const lines = counted.map(({ action, times }) => `step ${times} ${typeof action === "number" ? action : action.join(" ")}`);

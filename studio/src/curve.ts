@@ -1,13 +1,13 @@
-// The learning curve of a log: rewards of learning episodes, smoothed, and of evaluations, unsmoothed.
+// The learning curves of a log: smoothed rewards of learning episodes, and rewards of evaluations.
 
 import type { LoggedEpisode } from "./engine.ts";
 
 /** The curve of one task. */
 export interface Curve {
   task: string;
-  /** Learning: number of the experience, and mean reward of it and the preceding ones. */
+  /** Learning episodes: the number of the experience, and the trailing mean of the rewards. */
   learned: [number, number][];
-  /** Evaluation: number of the experience and its reward. */
+  /** Evaluation episodes: the number of the experience, and its reward. */
   tested: [number, number][];
 }
 

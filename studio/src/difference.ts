@@ -1,12 +1,12 @@
-// Outlines of the squares in which two images differ.
+// Outlines the squares in which two images differ.
 
 import type { Frame } from "./engine.ts";
 
 /** A line from one point to another, in pixels. */
 export type Line = [number, number, number, number];
 
-/** The outlines of all squares of `side` pixels in which a channel differs by more than `least`. */
-export function outlines(a: Frame, b: Frame, side = 8, least = 24): Line[] {
+/** Divides two images into squares of `side` pixels, and outlines those in which a channel differs by more than `threshold`. */
+export function outlines(a: Frame, b: Frame, side = 8, threshold = 24): Line[] {
   if (a.width !== b.width || a.height !== b.height) return [];
   const [columns, rows] = [Math.ceil(a.width / side), Math.ceil(a.height / side)];
   const differs = new Uint8Array(columns * rows);
@@ -14,7 +14,7 @@ export function outlines(a: Frame, b: Frame, side = 8, least = 24): Line[] {
     const square = Math.floor(Math.floor(pixel / a.width) / side) * columns + Math.floor((pixel % a.width) / side);
     if (differs[square]) continue;
     for (let channel = 0; channel < 3; channel += 1) {
-      if (Math.abs(a.data[4 * pixel + channel]! - b.data[4 * pixel + channel]!) > least) differs[square] = 1;
+      if (Math.abs(a.data[4 * pixel + channel]! - b.data[4 * pixel + channel]!) > threshold) differs[square] = 1;
     }
   }
   const at = (column: number, row: number) => (column < 0 || row < 0 || column >= columns || row >= rows ? 0 : differs[row * columns + column]!);

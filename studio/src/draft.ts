@@ -1,7 +1,7 @@
 // The text in the author view, stored in the browser so that a reload loses nothing.
 
 const KEY = "driftworld.draft";
-/** The text that was replaced outside the editor. */
+/** The key of the text that `take` replaced. */
 const REPLACED = "driftworld.replaced";
 
 function stored(key: string): string {
@@ -20,7 +20,7 @@ function store(key: string, text: string): void {
   }
 }
 
-/** The name of the task in a text; a default if there is none. */
+/** The name of the task in a text; `my_task` if it has none. */
 export const nameIn = (text: string): string => /"name"\s*:\s*"([a-z][a-z0-9_]*)"/.exec(text)?.[1] ?? "my_task";
 
 /** A copy of a built-in task's text, with a new name. */
@@ -34,7 +34,7 @@ export const draft = {
   get name(): string {
     return this.text && nameIn(this.text);
   },
-  /** The file that the draft is saved as, and that commands name. */
+  /** The name under which the draft is saved, and which commands use. */
   get file(): string {
     return `${this.name}.json`;
   },
@@ -43,7 +43,7 @@ export const draft = {
     store(KEY, text);
     this.onname?.(this.name);
   },
-  /** Replaces the text from outside the editor, which can restore the one before. */
+  /** Replaces the text from outside the editor; the editor can then restore the previous text. */
   take(text: string): void {
     if (this.text && this.text !== text) store(REPLACED, this.text);
     this.keep(text);

@@ -15,7 +15,7 @@ import { suggestions } from "./schema.ts";
 /** The editor as the author view uses it. */
 export interface Editor {
   text(): string;
-  /** Replace or change the text; both can be undone. Changes of one `drag` are undone together. */
+  /** Replaces or changes the text; both can be undone. The changes of one `drag` are undone together. */
   replace(text: string): void;
   change(change: Change, kind?: "alone" | "drag"): void;
   /** Selects a part of the text and shows it. */
@@ -80,7 +80,7 @@ export function createEditor(place: HTMLElement, text: string, context: () => { 
   });
   const offset = ({ line, column }: Problem): number => {
     const at = view.state.doc.line(Math.min(Math.max(1, line), view.state.doc.lines));
-    // Columns count characters; a column beyond the line is its end.
+    // Columns count characters; a column beyond the line means its end.
     return at.from + Math.min([...at.text].slice(0, Math.max(0, column - 1)).join("").length, at.length);
   };
   return {

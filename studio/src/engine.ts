@@ -1,14 +1,14 @@
 // The typed client of the simulator: every call runs in one worker, with a time limit and a way to stop it.
 //
 // The worker holds the simulator compiled to WebAssembly. A call that takes too long, or that is stopped, ends the worker; the next
-// call starts a new one. Episodes that were open in the old worker are then lost: calls on them fail with the code `engine/lost`.
+// call starts a new one. Episodes that were open in the old worker are lost: calls on them fail with the code `engine/lost`.
 
-import type { Answered, Asked } from "./worker.ts";
+import type { WorkerReply, WorkerRequest } from "./worker.ts";
 
 /** Any JSON value. */
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
-/** The elements of a decision process: state, action, transition, reward, observation; `p` and `phi` are the finer ones. */
+/** The elements of a decision process: state, action, transition, reward, observation; `p` (initial state) and `phi` (observation) are finer. */
 export type Element = "S" | "A" | "T" | "R" | "O" | "p" | "phi";
 
 /** A problem of a document, with its position. Lines and columns count from 1; 0 if the position is unknown. */
@@ -62,7 +62,7 @@ export interface Parameter {
   value: Value | null;
   /** Randomized only: the distribution, as in the task. */
   distribution: Json | null;
-  /** The condition under which anything reads it. */
+  /** The condition under which the parameter is read. */
   read_if: string | null;
 }
 
@@ -121,7 +121,7 @@ export type WorldRequest =
 export interface Validation {
   kind: "task" | "world" | "scenario" | "maps" | "l2explorer-world" | "l2explorer-scenario";
   problems: Problem[];
-  /** Whether there are more problems than listed. */
+  /** Whether the list of problems is cut short. */
   more: boolean;
   /** Warnings about odd but valid parts, as sentences. */
   warnings: string[];
@@ -225,7 +225,7 @@ export interface MapObject {
   radius: number;
   /** sRGB in 0..1. */
   color: [number, number, number];
-  /** Its current reward. */
+  /** Reward that it pays now. */
   reward: number;
   /** False once it is gone, and while it is carried. */
   present: boolean;
@@ -262,7 +262,7 @@ export type Measure = string;
 export interface DistancePart {
   name: string;
   element: Element;
-  /** The measure, and what its number is divided by. */
+  /** The measure, and the scale that its number is divided by. */
   measure: string;
   raw: number;
   normalised: number;
@@ -380,34 +380,34 @@ export interface Episode {
   readonly actionSpace: ActionSpace;
   /** The longer side of the world's own image size, in pixels. */
   readonly imageSize: number;
-  /** The JSON of the world that it began in. */
+  /** The JSON of the world in its initial state. */
   readonly world: string;
   /** Takes an action, or the action nearest to the input from keys. Steps after the end fail with `env/ended`. */
   step(action: Action | Keys): Promise<Step>;
   /** Takes several actions, until the episode ends; returns the steps taken. */
   steps(actions: Action[]): Promise<Step[]>;
-  /** The action that an agent would take now; changes only the agent's own state. An agent starts anew when it takes over. */
+  /** The action that an agent would take now; changes only the agent's own state. An agent that takes over from another starts afresh. */
   choose(agent: Agent): Promise<Action>;
-  /** `choose` and `step` at once. */
+  /** `choose`, then `step`. */
   act(agent: Agent): Promise<Step>;
-  /** Goes to the state after this number of steps, back or forth within the steps played. Playing on from there drops the rest. */
+  /** Goes to the state after this number of steps, back or forth within the steps played. A new step from there drops the later ones. */
   seek(step: number): Promise<Step>;
-  /** Its current state. */
+  /** The current state. */
   now(): Promise<Step>;
   /** Draws the agent's view, or the world from above; by default at the size given to `open`. */
   frame(view?: View, modality?: Modality, size?: { width: number; height: number }): Promise<Frame>;
   map(): Promise<WorldMap>;
-  /** All actions so far, also those beyond the moment that `seek` went to. */
+  /** All actions so far, including those after the moment that `seek` went to. */
   actions(): Promise<Action[]>;
   /** The episode so far as a file for `driftworld replay`. */
   recording(): Promise<string>;
-  /** Frees it. */
+  /** Frees the episode's memory. */
   close(): Promise<void>;
 }
 
 /** Options of the engine. */
 export interface EngineOptions {
-  /** The address of the folder with `worker.js`; that of the page if absent. */
+  /** The address of the folder with `worker.js`; the page's own folder if absent. */
   base?: string;
   /** Time limit of a call in milliseconds; 10,000 if absent. */
   limit?: number;
@@ -428,14 +428,14 @@ export interface DistanceOptions {
   as?: "variants" | "worlds";
 }
 
-/** The variants of a task that are compared, and the measure; by default all variants, and a fitting measure. */
+/** The variants of a task to compare, and the measure; by default all variants, and a measure that suits them. */
 export interface MatrixOptions {
   variants?: string[];
   by?: Measure;
   worlds?: number;
 }
 
-/** As `MatrixOptions`, with the ordering. */
+/** `MatrixOptions` and the options of the ordering. */
 export interface OrderOptions extends MatrixOptions {
   method?: OrderMethod;
   start?: string;
@@ -456,13 +456,13 @@ export interface Engine {
   task(nameOrText: string): Promise<Task>;
   /** The parameters of a task, as in `task`. */
   parameters(nameOrText: string): Promise<Parameter[]>;
-  /** The problems of a text, as a result: an invalid text is not an error. */
+  /** The problems of a text, as a result: the call does not fail on an invalid text. */
   validate(text: string): Promise<Validation>;
   /** The JSON Schema of a kind of document. */
   schema(kind: "task" | "world" | "scenario"): Promise<Json>;
   /** The JSON of a world, indented. */
   sample(request: WorldRequest): Promise<string>;
-  /** Begins an episode. Width and height are those of its frames; the world's own if absent. */
+  /** Begins an episode. Its frames have the given width and height, or the world's own if absent. */
   open(request: WorldRequest, options?: OpenOptions): Promise<Episode>;
   /** Runs a whole episode of an agent, for at most this number of steps (1000 if absent). */
   run(request: WorldRequest, agent: Agent, steps?: number): Promise<Outcome>;
@@ -501,7 +501,7 @@ interface Waiting {
   id: number;
   call: Record<string, unknown>;
   bytes: Uint8Array | undefined;
-  /** The worker that it is meant for: calls on episodes of a different worker fail. */
+  /** The worker that the call needs, because its episode lives there; null if any worker will do. */
   generation: number | null;
   resolve(answer: { value: Json; bytes: Uint8Array<ArrayBuffer> }): void;
   reject(error: EngineError): void;
@@ -513,14 +513,14 @@ class WorkerEngine implements Engine {
   /** The address of the folder with `worker.js`. */
   private readonly base: string;
   readonly makeWorker: () => Worker;
-  /** Counts the workers. */
+  /** The number of the current worker, from 1. */
   generation = 0;
   private worker: Worker | null = null;
   private loaded: Promise<void> = Promise.resolve();
   private waiting: Waiting[] = [];
   private running: Waiting | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private asked = 0;
+  private lastId = 0;
   private milliseconds = 0;
   /** Numbers of networks in the current worker. */
   private networks = new WeakMap<Uint8Array, { generation: number; number: number }>();
@@ -529,20 +529,20 @@ class WorkerEngine implements Engine {
     this.base = base;
     this.makeWorker = () => new Worker(new URL("worker.js", base), { type: "module" });
     this.limit = limit;
-    this.begin();
+    this.startWorker();
   }
 
-  private begin(): void {
-    const begun = performance.now();
+  private startWorker(): void {
+    const start = performance.now();
     const worker = this.makeWorker();
     this.generation += 1;
     this.worker = worker;
     this.loaded = new Promise((resolve, reject) => {
-      worker.onmessage = ({ data }: MessageEvent<Answered>) => {
+      worker.onmessage = ({ data }: MessageEvent<WorkerReply>) => {
         if (data.id >= 0) {
-          this.answered(data);
+          this.handleReply(data);
         } else if (data.failed === undefined) {
-          this.milliseconds = performance.now() - begun;
+          this.milliseconds = performance.now() - start;
           resolve();
         } else {
           reject(new EngineError("engine/load", data.failed));
@@ -574,8 +574,8 @@ class WorkerEngine implements Engine {
   /** Sends a call when its turn has come. */
   send(call: Record<string, unknown>, bytes?: Uint8Array, generation: number | null = null): Promise<{ value: Json; bytes: Uint8Array<ArrayBuffer> }> {
     return new Promise((resolve, reject) => {
-      this.asked += 1;
-      this.waiting.push({ id: this.asked, call, bytes, generation, resolve, reject });
+      this.lastId += 1;
+      this.waiting.push({ id: this.lastId, call, bytes, generation, resolve, reject });
       this.next();
     });
   }
@@ -584,7 +584,7 @@ class WorkerEngine implements Engine {
     if (this.running) return;
     const call = this.waiting.shift();
     if (!call) return;
-    if (!this.worker) this.begin();
+    if (!this.worker) this.startWorker();
     if (call.generation !== null && call.generation !== this.generation) {
       call.reject(new EngineError("engine/lost", "the episode ended with the simulator that it ran in; open it again"));
       this.next();
@@ -599,8 +599,8 @@ class WorkerEngine implements Engine {
           () => this.end(new EngineError("engine/timeout", `it took more than ${this.limit / 1000} s and was ended; ask for less`)),
           this.limit,
         );
-        const asked: Asked = { id: call.id, call: call.call, ...(call.bytes ? { bytes: call.bytes } : {}) };
-        this.worker?.postMessage(asked);
+        const request: WorkerRequest = { id: call.id, call: call.call, ...(call.bytes ? { bytes: call.bytes } : {}) };
+        this.worker?.postMessage(request);
       },
       (error: EngineError) => {
         if (this.running === call) this.end(error);
@@ -608,7 +608,7 @@ class WorkerEngine implements Engine {
     );
   }
 
-  private answered({ id, json, bytes, failed }: Answered): void {
+  private handleReply({ id, json, bytes, failed }: WorkerReply): void {
     const call = this.running;
     if (call?.id !== id) return;
     if (failed !== undefined || json === undefined || bytes === undefined) {
@@ -632,7 +632,7 @@ class WorkerEngine implements Engine {
     return (await this.send(call, undefined, generation)).value as T;
   }
 
-  /** An agent as calls name it; a network is handed over once to each worker. */
+  /** An agent as calls name it; each worker is sent a network only once. */
   async agent(agent: Agent): Promise<Json> {
     if (typeof agent === "string") return agent;
     const known = this.networks.get(agent.network);
@@ -648,9 +648,9 @@ class WorkerEngine implements Engine {
   }
 
   async tasks(): Promise<TaskCard[]> {
-    // The build has already asked the same simulator.
-    const kept = await fetch(new URL("tasks.json", this.base)).catch(() => null);
-    return kept?.ok ? ((await kept.json()) as TaskCard[]) : this.ask({ call: "tasks" });
+    // The build stores the answer of the same simulator in this file.
+    const stored = await fetch(new URL("tasks.json", this.base)).catch(() => null);
+    return stored?.ok ? ((await stored.json()) as TaskCard[]) : this.ask({ call: "tasks" });
   }
 
   task = (task: string): Promise<Task> => this.ask({ call: "task", task });
@@ -663,11 +663,11 @@ class WorkerEngine implements Engine {
 
   sample = (request: WorldRequest): Promise<string> => this.ask({ call: "sample", request });
 
-  open = (request: WorldRequest, options: OpenOptions = {}): Promise<Episode> => this.opened(request, { call: "open", request, ...drawn(options) });
+  open = (request: WorldRequest, options: OpenOptions = {}): Promise<Episode> => this.begin(request, { call: "open", request, ...openArguments(options) });
 
-  private async opened(request: WorldRequest | null, call: Record<string, unknown>): Promise<Episode> {
-    const found = await this.ask<Opened>(call);
-    return new WorkerEpisode(this, this.generation, request ?? { world: found.world }, found);
+  private async begin(request: WorldRequest | null, call: Record<string, unknown>): Promise<Episode> {
+    const info = await this.ask<EpisodeInfo>(call);
+    return new WorkerEpisode(this, this.generation, request ?? { world: info.world }, info);
   }
 
   async run(request: WorldRequest, agent: Agent, steps = 1000): Promise<Outcome> {
@@ -700,18 +700,18 @@ class WorkerEngine implements Engine {
   order = (task: string, options: OrderOptions = {}): Promise<Order> => this.ask({ call: "order", task, ...options });
 
   async log(files: DroppedFile[]): Promise<Log> {
-    const all = new Uint8Array(files.reduce((sum, file) => sum + file.bytes.length, 0));
-    let at = 0;
+    const joined = new Uint8Array(files.reduce((sum, file) => sum + file.bytes.length, 0));
+    let offset = 0;
     for (const { bytes } of files) {
-      all.set(bytes, at);
-      at += bytes.length;
+      joined.set(bytes, offset);
+      offset += bytes.length;
     }
     const call = { call: "log", files: files.map(({ path, bytes }) => ({ path, length: bytes.length })) };
-    return (await this.send(call, all)).value as unknown as Log;
+    return (await this.send(call, joined)).value as unknown as Log;
   }
 
   openLogged(experience: number, options: OpenOptions = {}): Promise<Episode> {
-    return this.opened(null, { call: "open_logged", experience, ...drawn(options) });
+    return this.begin(null, { call: "open_logged", experience, ...openArguments(options) });
   }
 
   encodeLink = (link: Link): Promise<string> => this.ask({ call: "encode_link", link });
@@ -719,14 +719,14 @@ class WorkerEngine implements Engine {
   decodeLink = (fragment: string): Promise<Link> => this.ask({ call: "decode_link", fragment });
 }
 
-/** The options of a call that opens a world. */
-function drawn({ looks, width, height }: OpenOptions): Record<string, unknown> {
-  const own = { ...(looks ? { style: looks } : {}) };
-  return width && height ? { ...own, size: [width, height] } : own;
+/** The arguments of a call that opens a world. */
+function openArguments({ looks, width, height }: OpenOptions): Record<string, unknown> {
+  const style = { ...(looks ? { style: looks } : {}) };
+  return width && height ? { ...style, size: [width, height] } : style;
 }
 
 /** The simulator's description of a new episode. */
-interface Opened {
+interface EpisodeInfo {
   id: number;
   image_size: number;
   world: string;
@@ -743,12 +743,12 @@ class WorkerEpisode implements Episode {
     private readonly engine: WorkerEngine,
     private readonly generation: number,
     readonly request: WorldRequest,
-    opened: Opened,
+    info: EpisodeInfo,
   ) {
-    this.id = opened.id;
-    this.actionSpace = opened.action_space;
-    this.imageSize = opened.image_size;
-    this.world = opened.world;
+    this.id = info.id;
+    this.actionSpace = info.action_space;
+    this.imageSize = info.image_size;
+    this.world = info.world;
   }
 
   private ask<T>(call: Record<string, unknown>): Promise<T> {
@@ -771,8 +771,8 @@ class WorkerEpisode implements Episode {
   now = (): Promise<Step> => this.ask({ call: "now" });
 
   async frame(view: View = "agent", modality: Modality = "rgb", size?: { width: number; height: number }): Promise<Frame> {
-    const wanted = size ? { size: [size.width, size.height] } : {};
-    const call = { call: "frame", episode: this.id, view, modality, ...wanted };
+    const ownSize = size ? { size: [size.width, size.height] } : {};
+    const call = { call: "frame", episode: this.id, view, modality, ...ownSize };
     const { value, bytes } = await this.engine.send(call, undefined, this.generation);
     const { width, height } = value as { width: number; height: number };
     return { width, height, data: new Uint8ClampedArray(bytes.buffer) };

@@ -1,8 +1,8 @@
-// Reads files that were dropped onto the page or picked; a folder gives all its files, with their paths in it.
+// Reads files that were dropped onto the page or picked. A folder yields all its files, with their paths.
 
 import { EngineError, type DroppedFile } from "./engine.ts";
 
-/** Maximum size of all files: a log of a lifetime has a few megabytes. */
+/** Maximum total size of the files; a log of a lifetime has a few megabytes. */
 const MAX_BYTES = 256 * 1024 * 1024;
 const MAX_FILES = 20_000;
 
@@ -24,7 +24,7 @@ async function walk(entry: FileSystemEntry, found: { path: string; file: File }[
     return;
   }
   const reader = (entry as FileSystemDirectoryEntry).createReader();
-  // A folder is read in parts; the last one is empty.
+  // A folder is read in parts until one is empty.
   for (;;) {
     const part = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
     if (!part.length) return;
@@ -34,7 +34,7 @@ async function walk(entry: FileSystemEntry, found: { path: string; file: File }[
 
 /** All files that were dropped, including those in folders. */
 export async function droppedFiles(transfer: DataTransfer): Promise<DroppedFile[]> {
-  // The dropped items are gone after the first await: take all entries at once.
+  // The dropped items become invalid at the first await, so get all entries now.
   const entries = [...transfer.items].flatMap((item) => item.webkitGetAsEntry() ?? []);
   const found: { path: string; file: File }[] = [];
   for (const entry of entries) await walk(entry, found);

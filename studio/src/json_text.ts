@@ -1,4 +1,4 @@
-// Finds and changes values in the text of a JSON document, and leaves every other character as it is.
+// Finds and changes values in the text of a JSON document, leaving every other character as it is.
 
 import type { Json } from "./engine.ts";
 
@@ -38,8 +38,8 @@ export function spans(text: string): Span | null {
     at += found.length;
     return found;
   };
-  const expect = (letter: string) => {
-    if (text[at] !== letter) throw new SyntaxError(`character ${at}`);
+  const expect = (character: string) => {
+    if (text[at] !== character) throw new SyntaxError(`character ${at}`);
     at += 1;
   };
   const list = (close: string, item: () => void) => {
@@ -126,7 +126,7 @@ export function change(text: string, path: Path, value: Json): Change | null {
   const starts = isMember ? parent.members!.map((member) => member.from) : parent.items!.map((item) => item.from);
   const ends = isMember ? parent.members!.map((member) => member.value.to) : parent.items!.map((item) => item.to);
   if (!ends.length) return { from: parent.from + 1, to: parent.to - 1, insert: isMember ? ` ${insert} ` : insert };
-  // Like the last one: on its own line, or after a comma.
+  // Formatted like the last one: on a line of its own, or on the same line.
   const before = text.slice(ends.at(-2) ?? parent.from + 1, starts.at(-1));
   const gap = before.includes("\n") ? before.slice(before.lastIndexOf("\n")) : " ";
   return { from: ends.at(-1)!, to: ends.at(-1)!, insert: `,${gap}${insert}` };
@@ -148,7 +148,7 @@ export function removal(text: string, path: Path): Change | null {
 }
 
 /** A text after a change. */
-export function applied(text: string, { from, to, insert }: Change): string {
+export function applyChange(text: string, { from, to, insert }: Change): string {
   return text.slice(0, from) + insert + text.slice(to);
 }
 
@@ -158,7 +158,7 @@ export function pathOf(pointer: string): Path {
   return steps.map((step) => (/^\d+$/.test(step) ? Number(step) : step));
 }
 
-/** The position of a cursor in a text that may be unfinished. */
+/** The position of a cursor in a document that may be unfinished. */
 export interface Cursor {
   path: Path;
   /** Whether a key or a value belongs here. */

@@ -9,32 +9,32 @@ const LEFT = ["ArrowLeft", "KeyA"];
 const RIGHT = ["ArrowRight", "KeyD"];
 const USE = ["Space", "KeyE"];
 /** All keys that control an agent. */
-export const HELD = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
+export const CONTROL_KEYS = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
 
 /** The input from held keys. */
-export function askedBy(held: ReadonlySet<string>): Keys {
+export function inputOf(held: ReadonlySet<string>): Keys {
   const any = (codes: string[]) => Number(codes.some((code) => held.has(code)));
   return { ahead: any(AHEAD) - any(BACK), turn: any(RIGHT) - any(LEFT), interact: any(USE) === 1 };
 }
 
 /** Whether there is any input. */
-export const isAsking = (keys: Keys): boolean => keys.ahead !== 0 || keys.turn !== 0 || keys.interact;
+export const hasInput = (keys: Keys): boolean => keys.ahead !== 0 || keys.turn !== 0 || keys.interact;
 
-/** Whether a key is meant for a control, such as a list, and not for the world. */
+/** Whether a key press is meant for a control, such as a list, rather than for the world. */
 const isForControl = (target: EventTarget | null): boolean =>
   target instanceof Element && target.closest("input, select, textarea, button, a, summary, [contenteditable], .editor") !== null;
 
-/** The keys held while the page has the focus; `press` is called for each new one. A short press counts until it is read. */
+/** The keys held while the page has the focus; `press` is called for each new one. A key that is released early still counts in the next `read`. */
 export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(code: string, isDown: boolean): void } {
   const held = useRef(new Set<string>());
   const tapped = useRef(new Set<string>());
-  const heard = useRef(press);
-  heard.current = press;
+  const onPress = useRef(press);
+  onPress.current = press;
   const set = (code: string, isDown: boolean) => {
     if (isDown) {
       held.current.add(code);
       tapped.current.add(code);
-      heard.current(code);
+      onPress.current(code);
     } else {
       held.current.delete(code);
     }
@@ -42,10 +42,10 @@ export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(
   useLayoutEffect(() => {
     const down = (event: KeyboardEvent) => {
       if (isForControl(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
-      if (HELD.includes(event.code)) event.preventDefault();
+      if (CONTROL_KEYS.includes(event.code)) event.preventDefault();
       if (!event.repeat) {
-        if (HELD.includes(event.code)) set(event.code, true);
-        else heard.current(event.code);
+        if (CONTROL_KEYS.includes(event.code)) set(event.code, true);
+        else onPress.current(event.code);
       }
     };
     const up = (event: KeyboardEvent) => set(event.code, false);
@@ -60,7 +60,7 @@ export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(
     };
   }, []);
   const read = () => {
-    const keys = askedBy(new Set([...held.current, ...tapped.current]));
+    const keys = inputOf(new Set([...held.current, ...tapped.current]));
     tapped.current.clear();
     return keys;
   };

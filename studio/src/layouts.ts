@@ -1,4 +1,4 @@
-// Text layouts in a task spec: finds them, and changes a cell.
+// Finds text layouts and lists of points in a task spec, and changes a cell of a layout.
 
 import type { Json } from "./engine.ts";
 import type { Path } from "./json_text.ts";
@@ -7,14 +7,14 @@ import type { Path } from "./json_text.ts";
 export interface TextLayout {
   /** The path to its list of rows. */
   path: Path;
-  /** Its location for readers: `maze / choices / plus`. */
+  /** Its location, for people: `maze / choices / plus`. */
   label: string;
   rows: string[];
   /** Letters that can be put into a cell, each with its meaning. */
   letters: { letter: string; meaning: string }[];
 }
 
-const USUAL: Record<string, string> = { "#": "wall", ".": "floor", A: "start" };
+const STANDARD_LETTERS: Record<string, string> = { "#": "wall", ".": "floor", A: "start" };
 
 /** The meaning of a letter of a legend, in words. */
 function meaning(entry: Json): string {
@@ -29,7 +29,7 @@ export function textLayouts(document: Json): TextLayout[] {
     const { text, legend } = Array.isArray(value) ? {} : value;
     if (Array.isArray(text) && text.length > 0 && text.every((row) => typeof row === "string")) {
       const own = legend && typeof legend === "object" && !Array.isArray(legend) ? legend : {};
-      const letters = { ...USUAL, ...Object.fromEntries(Object.entries(own).map(([letter, entry]) => [letter, meaning(entry)])) };
+      const letters = { ...STANDARD_LETTERS, ...Object.fromEntries(Object.entries(own).map(([letter, entry]) => [letter, meaning(entry)])) };
       found.push({
         path: [...path, "text"],
         label: path.filter((step) => step !== "parameters" && step !== "world").join(" / ") || "layout",
@@ -56,12 +56,12 @@ export interface PointGroup {
   name: string;
   /** The path to its list of points. */
   path: Path;
-  /** The path to its count, if that is a number. */
+  /** The path to its count; null if the count is not a plain number. */
   count: Path | null;
   points: [number, number][];
 }
 
-/** The groups of a task whose positions are a list of points, which a click on the map extends. */
+/** The groups of a task whose positions are a list of points; a click on the map adds or removes a point. */
 export function pointGroups(document: Json): PointGroup[] {
   const groups = document !== null && typeof document === "object" && !Array.isArray(document) ? document["groups"] : null;
   return (Array.isArray(groups) ? groups : []).flatMap((group, index) => {

@@ -1,4 +1,4 @@
-// The page: which view is shown, the bar above it, and the stop button of the simulator.
+// The page: shows the view that the address names, with a bar above it and a stop button for the simulator.
 
 import { render } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
@@ -13,23 +13,23 @@ import { Compare } from "./views/compare.tsx";
 import { Order } from "./views/order.tsx";
 import { Replay } from "./views/replay.tsx";
 
-const SHOWN: Record<ViewName, (props: { route: Route }) => preact.JSX.Element> = {
+const COMPONENTS: Record<ViewName, (props: { route: Route }) => preact.JSX.Element> = {
   gallery: Gallery, play: Play, author: Author, compare: Compare, order: Order, replay: Replay,
 };
 const TITLES: Record<ViewName, string> = {
   gallery: "Gallery", play: "Play", author: "Author", compare: "Compare", order: "Order", replay: "Replay",
 };
-/** Shorter calls show no busy indicator. */
-const SHORT_MS = 400;
+/** Calls that take no longer than this show no busy indicator. */
+const BUSY_DELAY_MS = 400;
 
-/** Busy indicator for long calls, with a stop button. */
+/** A busy indicator for long calls, with a stop button. */
 function Busy() {
   const [isShown, setShown] = useState(false);
   useEffect(() => {
     let timer = 0;
     engine.onbusy = (busy) => {
       clearTimeout(timer);
-      if (busy) timer = window.setTimeout(() => setShown(true), SHORT_MS);
+      if (busy) timer = window.setTimeout(() => setShown(true), BUSY_DELAY_MS);
       else setShown(false);
     };
     return () => {
@@ -49,8 +49,8 @@ function Busy() {
 }
 
 /** Shown for an address that matches nothing. */
-function Nothing({ what }: { what: string }) {
-  return <p class="note warn" role="alert"><span>{what} <a href={hrefOf("gallery")}>The gallery</a> shows all tasks.</span></p>;
+function NotFound({ message }: { message: string }) {
+  return <p class="note warn" role="alert"><span>{message} <a href={hrefOf("gallery")}>The gallery</a> shows all tasks.</span></p>;
 }
 
 function App() {
@@ -58,11 +58,11 @@ function App() {
   const main = useRef<HTMLElement>(null);
   const started = useAnswer(() => engine.ready(), []);
   const tasks = useAnswer(() => engine.tasks(), []);
-  const [own, setOwn] = useState(draft.name);
-  const isKnown = route.task === "draft" ? own || route.view === "author" : !tasks.value || tasks.value.some(({ name }) => name === route.task);
+  const [draftName, setDraftName] = useState(draft.name);
+  const isKnown = route.task === "draft" ? draftName || route.view === "author" : !tasks.value || tasks.value.some(({ name }) => name === route.task);
   const isUnknown = route.task && !isKnown;
   useEffect(() => {
-    draft.onname = setOwn;
+    draft.onname = setDraftName;
   }, []);
   useEffect(() => {
     const go = () => {
@@ -83,7 +83,7 @@ function App() {
   useEffect(() => {
     document.title = `${route.task ? `${route.task} · ` : ""}${TITLES[route.view]} · Driftworld`;
   }, [route]);
-  const View = SHOWN[route.view];
+  const View = COMPONENTS[route.view];
   return (
     <>
       <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); main.current?.focus(); }}>Skip to the content</a>
@@ -93,10 +93,10 @@ function App() {
           <nav aria-label="Views">
             {VIEWS.map((view) => (
               <a
-                key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : view === "author" && own ? "draft" : route.task)}
+                key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : view === "author" && draftName ? "draft" : route.task)}
                 {...(view === route.view ? { "aria-current": "page" as const } : {})}
               >
-                {TITLES[view]}{view === "author" && own && <span class="own">{own}</span>}
+                {TITLES[view]}{view === "author" && draftName && <span class="own">{draftName}</span>}
               </a>
             ))}
           </nav>
@@ -105,8 +105,8 @@ function App() {
       </header>
       <main id="main" ref={main} tabIndex={-1}>
         {started.error && <ErrorNote error={started.error} again={() => location.reload()} />}
-        {route.unknown && <Nothing what={`There is no page ${route.unknown}.`} />}
-        {isUnknown && <Nothing what={route.task === "draft" ? "There is no task of your own yet." : `There is no task called ${route.task}.`} />}
+        {route.unknown && <NotFound message={`There is no page ${route.unknown}.`} />}
+        {isUnknown && <NotFound message={route.task === "draft" ? "There is no task of your own yet." : `There is no task called ${route.task}.`} />}
         {started.value && !tasks.pending && !isUnknown && <View key={route.view} route={route} />}
         {started.pending && <p class="loading">Loading the simulator …</p>}
       </main>

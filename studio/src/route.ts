@@ -1,4 +1,4 @@
-// Addresses of the page: `#/play/maze?variant=small&seed=3` names a view and what it shows; any other fragment is an episode.
+// Addresses of the page: `#/play/maze?variant=small&seed=3` selects a view and its contents; a fragment without the slash encodes an episode.
 
 /** The views of the page. */
 export const VIEWS = ["gallery", "play", "author", "compare", "order", "replay"] as const;
@@ -7,12 +7,12 @@ export type ViewName = (typeof VIEWS)[number];
 /** The contents of an address's fragment. */
 export interface Route {
   view: ViewName;
-  /** A built-in task, or `draft` for the text of the author view; empty if none is named. */
+  /** A built-in task, or `draft` for the text of the author view; empty if the address names none. */
   task: string;
   options: Record<string, string>;
-  /** The fragment of an episode, for the view `replay`. */
+  /** The encoded episode, for the view `replay`. */
   link: string | null;
-  /** The unknown path, if it does not name a view; else null. */
+  /** The path, if it names no view; else null. */
   unknown: string | null;
 }
 

@@ -5,7 +5,7 @@ import { type Cursor, type Path, oneLine } from "./json_text.ts";
 
 type Schema = { [key: string]: Json };
 
-/** Something that can be typed: `insert` is JSON. */
+/** A completion: `insert` is JSON. */
 export interface Suggestion {
   insert: string;
   detail: string;
@@ -48,13 +48,13 @@ function schemasAt(root: Schema, path: Path): Schema[] {
   return here;
 }
 
-const sentence = (schema: Json | undefined): string => {
+const firstSentence = (schema: Json | undefined): string => {
   const text = isSchema(schema) ? schema["description"] : undefined;
   return typeof text === "string" ? text.split("\n")[0]!.split(/(?<=\.)\s/)[0]! : "";
 };
 
-/** Completions from a task: the names of its parameters, and in variants their choices. */
-function ofTask(task: Task | null, { path, at }: Cursor): Suggestion[] {
+/** Completions from a task: the names of its parameters and, in variants, their choices. */
+function fromTask(task: Task | null, { path, at }: Cursor): Suggestion[] {
   if (!task) return [];
   const variables = task.parameters.filter((parameter) => parameter.role === "variant");
   if (path[0] === "variants" && path.length === 2 && at === "key") {
@@ -73,7 +73,7 @@ function ofTask(task: Task | null, { path, at }: Cursor): Suggestion[] {
 /** The completions at a cursor, without duplicates. */
 export function suggestions(schema: Json, cursor: Cursor, task: Task | null = null): Suggestion[] {
   if (!isSchema(schema)) return [];
-  const found = new Map(ofTask(task, cursor).map((suggestion) => [suggestion.insert, suggestion]));
+  const found = new Map(fromTask(task, cursor).map((suggestion) => [suggestion.insert, suggestion]));
   const add = (value: Json, detail: string) => {
     const insert = oneLine(value);
     if (!found.has(insert)) found.set(insert, { insert, detail });
@@ -82,12 +82,12 @@ export function suggestions(schema: Json, cursor: Cursor, task: Task | null = nu
     if (cursor.at === "key") {
       const properties = place["properties"];
       for (const [key, value] of isSchema(properties) ? Object.entries(properties) : []) {
-        if (!cursor.keys.includes(key)) add(key, sentence(value));
+        if (!cursor.keys.includes(key)) add(key, firstSentence(value));
       }
     } else {
       const values = [place["const"], ...(Array.isArray(place["enum"]) ? place["enum"] : [])];
-      for (const value of values) if (value !== undefined) add(value, sentence(place));
-      if (place["type"] === "boolean") [true, false].forEach((value) => add(value, sentence(place)));
+      for (const value of values) if (value !== undefined) add(value, firstSentence(place));
+      if (place["type"] === "boolean") [true, false].forEach((value) => add(value, firstSentence(place)));
       if (place["default"] !== undefined && oneLine(place["default"]).length < 40) add(place["default"], "the default");
     }
   }

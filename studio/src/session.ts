@@ -1,4 +1,4 @@
-// An episode with its player (keys or an agent), the latest image and the latest map.
+// An episode with its player (keys or an agent), its latest image and its latest map.
 
 import type { Action, Agent, Episode, Frame, Keys, Step, WorldMap, WorldRequest } from "./engine.ts";
 import { engine } from "./simulator.ts";
@@ -31,7 +31,7 @@ export class Session {
     return this.step.terminated || this.step.truncated;
   }
 
-  /** Whether the world has an action for no input; otherwise it waits for keys. */
+  /** Whether time can pass without input: the world has an action that does nothing. Otherwise the episode waits for keys. */
   get canWait(): boolean {
     const { table } = this.episode.actionSpace;
     return !table || table.some((row) => row.every((number) => number === 0));
@@ -58,8 +58,8 @@ export class Session {
     this.step = step;
     if (step.action !== null) this.actions.push(step.action);
     for (const event of step.events) {
-      const what = event.tag ?? this.map?.objects[event.object]?.class ?? `object ${event.object}`;
-      this.log.unshift({ step: step.step, text: `${what} ${(event.effect ?? EFFECTS[event.stimulus] ?? "touched").replace("_", " ")}`, reward: event.reward });
+      const name = event.tag ?? this.map?.objects[event.object]?.class ?? `object ${event.object}`;
+      this.log.unshift({ step: step.step, text: `${name} ${(event.effect ?? EFFECTS[event.stimulus] ?? "touched").replace("_", " ")}`, reward: event.reward });
     }
     this.log.length = Math.min(this.log.length, 50);
   }

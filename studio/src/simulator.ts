@@ -1,13 +1,13 @@
-// The one simulator of the page, and hooks that wait for it.
+// The simulator that the whole page shares, and hooks that wait for it.
 
 import { useEffect, useState } from "preact/hooks";
 import { type Agent, createEngine, EngineError, type WorldRequest } from "./engine.ts";
 import { draft } from "./draft.ts";
 
-/** Long measures take tens of seconds; the bar has a button that stops them. */
+/** The limit is generous: some measures take tens of seconds, and the bar has a button that stops them. */
 export const engine = createEngine({ limit: 60_000 });
 
-/** The outcome of a call. While a new call is pending, the last value stays. */
+/** The outcome of a call. While a new call is pending, the previous value is kept. */
 export interface Outcome<T> {
   value: T | null;
   error: EngineError | null;
@@ -19,7 +19,7 @@ export function asError(error: unknown): EngineError {
   return error instanceof EngineError ? error : new EngineError("page/failed", error instanceof Error ? error.message : String(error));
 }
 
-/** Calls again when one of `inputs` changes, and ignores outdated answers; null makes no call. */
+/** Makes the call again when one of `inputs` changes, and ignores outdated answers. If `call` is null, nothing is called. */
 export function useAnswer<T>(call: (() => Promise<T>) | null, inputs: unknown[]): Outcome<T> {
   const [outcome, setOutcome] = useState<Outcome<T>>({ value: null, error: null, pending: call !== null });
   useEffect(() => {
@@ -46,12 +46,12 @@ export function requestOf(task: string, variant: string, seed: number, index: nu
   return { task: text, ...(variant ? { variant } : {}), seed, index };
 }
 
-let shelf: Promise<string[]> | null = null;
+let trainedNames: Promise<string[]> | null = null;
 
 /** The tasks for which the page has a trained network. */
 export function trainedTasks(): Promise<string[]> {
-  shelf ??= fetch("networks/index.json").then((reply) => (reply.ok ? (reply.json() as Promise<string[]>) : []), () => []);
-  return shelf;
+  trainedNames ??= fetch("networks/index.json").then((reply) => (reply.ok ? (reply.json() as Promise<string[]>) : []), () => []);
+  return trainedNames;
 }
 
 const networks = new Map<string, Promise<Agent>>();
@@ -61,7 +61,7 @@ export function trainedAgent(task: string): Promise<Agent> {
   const known = networks.get(task);
   if (known) return known;
   const agent = fetch(`networks/${encodeURIComponent(task)}.safetensors`).then(async (reply) => {
-    if (!reply.ok) throw new EngineError("page/network", `no trained network of ${task} lies beside the page`);
+    if (!reply.ok) throw new EngineError("page/network", `there is no trained network for ${task} on this page`);
     return { network: new Uint8Array(await reply.arrayBuffer()) };
   });
   networks.set(task, agent);

@@ -1,4 +1,4 @@
-// Tasks to start from in the author view. Each is valid, and small enough to be read at a glance.
+// Tasks to start from in the author view. Each is valid, and short enough to take in at a glance.
 
 import map from "./templates/map.json";
 import maze from "./templates/maze.json";
@@ -11,7 +11,7 @@ export interface Template {
 }
 
 export const TEMPLATES: Template[] = [
-  { name: "a maze, another in every world", text: maze },
+  { name: "a maze, different in every world", text: maze },
   { name: "a map drawn with letters", text: map },
   { name: "a park with things to collect", text: park },
 ];

@@ -12,7 +12,7 @@ export interface Answer {
   bytes: Uint8Array<ArrayBuffer>;
 }
 
-/** Runs a call. */
+/** Sends a call to the simulator. */
 export type Caller = (call: unknown, bytes?: Uint8Array) => Answer;
 
 /** Starts the simulator. The module has no imports: it reads no clock, no files and no network. */
@@ -25,9 +25,9 @@ export async function start(module: WebAssembly.Module): Promise<Caller> {
     const json = encoder.encode(JSON.stringify(call));
     const length = json.length + bytes.length;
     const input = driftworld_memory(length);
-    const place = new Uint8Array(memory.buffer, input, length);
-    place.set(json);
-    place.set(bytes, json.length);
+    const target = new Uint8Array(memory.buffer, input, length);
+    target.set(json);
+    target.set(bytes, json.length);
     const answer = driftworld_call(input, length, json.length);
     const [textAt, textLength, bytesAt, bytesLength] = new Uint32Array(memory.buffer, answer, 4) as unknown as [number, number, number, number];
     return {
@@ -37,20 +37,20 @@ export async function start(module: WebAssembly.Module): Promise<Caller> {
   };
 }
 
-/** The module beside the page: brotli if the browser can unpack it, else gzip; the server needs no configuration. */
+/** Loads the module beside the page: the brotli file if the browser can decompress it, else the gzip file. The server needs no configuration. */
 export async function load(base: string): Promise<WebAssembly.Module> {
-  const [name, unpacked] = unpacker();
+  const [name, decompressor] = pickCompression();
   const reply = await fetch(new URL(name, base));
   if (!reply.ok || !reply.body) {
     throw new Error(`${name}: found ${reply.status}, expected the simulator; build the page with \`cargo xtask studio\``);
   }
-  const stream = reply.body.pipeThrough(unpacked);
+  const stream = reply.body.pipeThrough(decompressor);
   return WebAssembly.compileStreaming(new Response(stream, { headers: { "content-type": "application/wasm" } }));
 }
 
-function unpacker(): [string, ReadableWritablePair<Uint8Array<ArrayBuffer>, BufferSource>] {
+function pickCompression(): [string, ReadableWritablePair<Uint8Array<ArrayBuffer>, BufferSource>] {
   try {
-    // Not in the types yet; browsers that do not know it throw.
+    // TypeScript does not know this format yet; browsers without it throw.
     return ["driftworld.wasm.br", new DecompressionStream("brotli" as CompressionFormat)];
   } catch {
     return ["driftworld.wasm.gz", new DecompressionStream("gzip")];

@@ -1,8 +1,8 @@
-// Parameters as their author wrote them: `gold` instead of three numbers; a maze without its defaults.
+// Shows parameters as their author wrote them: `gold` instead of three numbers; a maze without its defaults.
 
 import type { Json, Parameter, Task, Value } from "./engine.ts";
 
-/** A choice as its author wrote it, and in full, as in variants. */
+/** A choice as its author wrote it, and in full, as it appears in variants. */
 export interface WrittenChoice {
   value: Value;
   full: Value;
@@ -13,7 +13,7 @@ export interface WrittenChoice {
 export type WrittenParameter = Omit<Parameter, "choices"> & { choices: WrittenChoice[] | null };
 
 /** The parameters of a task, with the choices as written in its text. */
-export function written({ text, parameters }: Pick<Task, "text" | "parameters">): WrittenParameter[] {
+export function writtenParameters({ text, parameters }: Pick<Task, "text" | "parameters">): WrittenParameter[] {
   const document = JSON.parse(text) as { parameters?: Record<string, { choices?: Json }> };
   return parameters.map((parameter) => {
     const choices = document.parameters?.[parameter.name]?.choices;

@@ -5,10 +5,10 @@ import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { load } from "./bundle.mjs";
 
-const { applied, change, cursorAt, oneLine, pathOf, removal, same, spanAt, spans } = await load("json_text.ts");
+const { applyChange, change, cursorAt, oneLine, pathOf, removal, same, spanAt, spans } = await load("json_text.ts");
 const { suggestions } = await load("schema.ts");
 const { pointGroups, textLayouts, withLetter } = await load("layouts.ts");
-const { written } = await load("written.ts");
+const { writtenParameters } = await load("written.ts");
 const { TEMPLATES } = await load("templates.ts");
 
 const TEXT = `{
@@ -24,7 +24,7 @@ const at = (path, text = TEXT) => {
   const span = spanAt(spans(text), path);
   return span && text.slice(span.from, span.to);
 };
-const changed = (path, value, text = TEXT) => applied(text, change(text, path, value));
+const changed = (path, value, text = TEXT) => applyChange(text, change(text, path, value));
 
 test("spans finds every value of a document, and nothing in invalid JSON", () => {
   assert.equal(at(["name"]), '"a\\"b"');
@@ -48,7 +48,7 @@ test("a new member is formatted like its neighbours", () => {
 });
 
 test("a removal also removes the comma", () => {
-  const without = (path) => JSON.parse(applied(TEXT, removal(TEXT, path)));
+  const without = (path) => JSON.parse(applyChange(TEXT, removal(TEXT, path)));
   assert.deepEqual(without(["list", 0]).list, [[2, 3]]);
   assert.deepEqual(without(["list", 1]).list, [1]);
   assert.deepEqual(without(["deep", "y"]).deep, { x: 1 });
@@ -114,7 +114,7 @@ test("choices of parameters are shown as written", () => {
   const parameters = [
     { name: "c", choices: [{ value: full, name: null }] }, { name: "l", choices: [{ value: { maze: { braid: 0 } }, name: "big" }] }, { name: "n", choices: null },
   ];
-  const [color, layout, number] = written({ text, parameters });
+  const [color, layout, number] = writtenParameters({ text, parameters });
   assert.deepEqual(color.choices, [{ value: "gold", full, name: null }]);
   assert.deepEqual(layout.choices, [{ value: { maze: {} }, full: { maze: { braid: 0 } }, name: "big" }]);
   assert.equal(number.choices, null);

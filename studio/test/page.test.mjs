@@ -8,12 +8,12 @@ const { hrefOf, parseRoute, wholeNumber } = await load("route.ts");
 const commands = await load("commands.ts");
 const { scaleOf, toMetres, toPixels, whatIsAt } = await load("map_view.ts");
 const { outlines } = await load("difference.ts");
-const { following, looped, marks } = await load("timeline.ts");
+const { nextMoment, moveLoopEnd, marks } = await load("timeline.ts");
 const { curves, trailingMeans } = await load("curve.ts");
 const { copyOf, nameIn } = await load("draft.ts");
 const { placeLabels } = await load("labels.ts");
-const { amount, payOf } = await load("pay.ts");
-const { askedBy, isAsking } = await load("keys.ts");
+const { amount, describeRewards } = await load("pay.ts");
+const { inputOf, hasInput } = await load("keys.ts");
 
 test("addresses survive a round trip", () => {
   const { view, task, options } = parseRoute(hrefOf("play", "a b/c", { variant: "x&y", seed: 3, index: undefined }));
@@ -68,13 +68,13 @@ test("map points convert from metres to pixels and back", () => {
 });
 
 test("a map describes what is at a point", () => {
-  const said = (x, y) => whatIsAt(MAP, [x, y]);
-  assert.deepEqual(said(-3, 3.2), { text: "gate (door), open", object: 0 });
-  assert.deepEqual(said(3, -3), { text: "geometric, pays 100", object: 1 });
-  assert.equal(said(0.2, 0).text, "the agent");
-  assert.match(said(6, 3).text, /^wall/);
-  assert.match(said(-7, -2).text, /^zone mud/);
-  assert.deepEqual(said(8, -4), { text: "8.0 m east, -4.0 m north", object: null });
+  const described = (x, y) => whatIsAt(MAP, [x, y]);
+  assert.deepEqual(described(-3, 3.2), { text: "gate (door), open", object: 0 });
+  assert.deepEqual(described(3, -3), { text: "geometric, pays 100", object: 1 });
+  assert.equal(described(0.2, 0).text, "the agent");
+  assert.match(described(6, 3).text, /^wall/);
+  assert.match(described(-7, -2).text, /^zone mud/);
+  assert.deepEqual(described(8, -4), { text: "8.0 m east, -4.0 m north", object: null });
 });
 
 test("differences are outlined where they are", () => {
@@ -85,7 +85,7 @@ test("differences are outlined where they are", () => {
   const lines = outlines(a, b);
   assert.deepEqual(lines.toSorted().map(String), ["16,12,20,12", "16,8,16,12", "16,8,20,8", "20,8,20,12"]);
   b.data[4 * (9 * 20 + 18)] = 20;
-  assert.deepEqual(outlines(a, b), [], "within what shading may differ");
+  assert.deepEqual(outlines(a, b), [], "a difference that shading may cause");
   assert.deepEqual(outlines(a, { ...b, width: 10 }), []);
 });
 
@@ -109,11 +109,11 @@ test("rewards of a world fit on one line", () => {
     objects: [{ class: "geometric", tag: "goal", reward: 100, ...touched }, { class: "rock", reward: -0.5, ...touched }, { class: "rock", reward: -0.5, ...touched }, { class: "tree", reward: 9 }],
     environment_params: { zones: [{ name: "hot_place", reward_on_entering: -3 }, { name: "sand" }] },
   };
-  assert.equal(payOf(JSON.stringify(world), 0.1), "goal +100 · rock −0.5 · hot place −3 · every step −0.05 · ends after 120 s");
+  assert.equal(describeRewards(JSON.stringify(world), 0.1), "goal +100 · rock −0.5 · hot place −3 · every step −0.05 · ends after 120 s");
   const seldom = { objects: [{ class: "barrel", tag: "others", reward: 1, reward_probability: 0.1, ...touched }] };
-  assert.equal(payOf(JSON.stringify(seldom), 0.1), "others +1, 10 % of the time");
-  assert.equal(payOf(JSON.stringify({ max_steps: 300, objects: [] }), 0.1), "ends after 300 steps");
-  assert.equal(payOf(JSON.stringify({ rules: { reward_per_second: -0.02 }, objects: [] }), 0.1), "every step −0.002");
+  assert.equal(describeRewards(JSON.stringify(seldom), 0.1), "others +1, 10 % of the time");
+  assert.equal(describeRewards(JSON.stringify({ max_steps: 300, objects: [] }), 0.1), "ends after 300 steps");
+  assert.equal(describeRewards(JSON.stringify({ rules: { reward_per_second: -0.02 }, objects: [] }), 0.1), "every step −0.002");
   assert.deepEqual([3, -0.125, -7].map(amount), ["3", "−0.13", "−7"]);
 });
 
@@ -121,11 +121,11 @@ test("timelines mark what is unusual, and loops keep to their ends", () => {
   const step = (number, reward, events = []) => ({ step: number, reward, events });
   const found = marks([step(1, -1), step(2, -1), step(3, 50), step(4, -1, [{ tag: "door", effect: "picked_up", stimulus: "" }])]);
   assert.deepEqual(found, [{ step: 3, reward: 50, text: "" }, { step: 4, reward: -1, text: "door picked up" }]);
-  assert.equal(following(4, 9, null), 5);
-  assert.equal(following(9, 9, null), null);
-  assert.equal(following(6, 9, { from: 2, to: 6 }), 2);
-  assert.deepEqual(looped(null, "to", 4, 9), { from: 0, to: 4 });
-  assert.deepEqual(looped({ from: 0, to: 4 }, "from", 7, 9), { from: 7, to: 7 });
+  assert.equal(nextMoment(4, 9, null), 5);
+  assert.equal(nextMoment(9, 9, null), null);
+  assert.equal(nextMoment(6, 9, { from: 2, to: 6 }), 2);
+  assert.deepEqual(moveLoopEnd(null, "to", 4, 9), { from: 0, to: 4 });
+  assert.deepEqual(moveLoopEnd({ from: 0, to: 4 }, "from", 7, 9), { from: 7, to: 7 });
 });
 
 test("curves are means of learning rewards, task by task", () => {
@@ -136,6 +136,6 @@ test("curves are means of learning rewards, task by task", () => {
 });
 
 test("opposite keys cancel out", () => {
-  assert.deepEqual(askedBy(new Set(["ArrowUp", "KeyD", "Space"])), { ahead: 1, turn: 1, interact: true });
-  assert.equal(isAsking(askedBy(new Set(["ArrowUp", "KeyS", "KeyX"]))), false);
+  assert.deepEqual(inputOf(new Set(["ArrowUp", "KeyD", "Space"])), { ahead: 1, turn: 1, interact: true });
+  assert.equal(hasInput(inputOf(new Set(["ArrowUp", "KeyS", "KeyX"]))), false);
 });

@@ -8,8 +8,8 @@ import { built, native, network, started } from "./node.mjs";
 import { answers, groups } from "./script.mjs";
 
 const full = process.env.DRIFTWORLD_FULL !== undefined;
-const asked = groups(full);
-const expected = native(asked);
+const calls = groups(full);
+const expected = native(calls);
 /** Minimum number of answers in each group, in a full run. */
 const MIN_ANSWERS = { frames: 20_000, worlds: 100, distances: 100 };
 
@@ -25,7 +25,7 @@ function same(found) {
 
 test("answers in Node equal native answers", { skip: full && browserPath() ? "compared in Chromium" : false }, async () => {
   const call = await started();
-  same(await answers(asked, async (one, bytes) => call(one, bytes), network));
+  same(await answers(calls, async (one, bytes) => call(one, bytes), network));
 });
 
 test("one changed answer changes the hash", async () => {
@@ -62,7 +62,7 @@ test("answers in Chromium equal native answers", { skip: browserPath() ? false :
         worker.postMessage({ id, call, ...(bytes ? { bytes } : {}) });
       });
       const network = async (name) => new Uint8Array(await (await fetch("/networks/" + name + ".safetensors")).arrayBuffer());
-      return (${answers})(${JSON.stringify(asked)}, call, network);
+      return (${answers})(${JSON.stringify(calls)}, call, network);
     })()`);
     same(found);
   } finally {

@@ -14,8 +14,8 @@ import { browserPath, launch, overflow, SCREENS, serve, shot } from "./browser.m
 
 const { DRIFTWORLD_PAGE: folder, DRIFTWORLD_COMMAND: command } = process.env;
 const skip = (!folder && "DRIFTWORLD_PAGE names no built page") || (!browserPath() && "there is no Chromium");
-/** Time in which even a busy machine draws its first world. */
-const PATIENCE_MS = 60_000;
+/** Time within which even a busy machine draws its first world. */
+const TIMEOUT_MS = 60_000;
 
 let server;
 let browser;
@@ -31,9 +31,9 @@ after(async () => {
 
 /** Opens an address, performs a task, checks that the page has no errors and no overflow, and takes screenshots. */
 function task(name, address, does) {
-  test(name, { skip, timeout: 5 * PATIENCE_MS }, async () => {
+  test(name, { skip, timeout: 5 * TIMEOUT_MS }, async () => {
     const page = await browser.page();
-    page.setDefaultTimeout(PATIENCE_MS);
+    page.setDefaultTimeout(TIMEOUT_MS);
     await page.goto(server.address + address);
     await does(page);
     for (const [screen, { width, height, scheme }] of Object.entries(SCREENS)) {
@@ -89,7 +89,7 @@ const hash = (selector) => {
 const pixels = (page, selector) => page.evaluate(hash, selector);
 /** Waits until a picture has these pixels, or others. */
 async function untilPixels(page, selector, wanted, isSame) {
-  const end = Date.now() + PATIENCE_MS;
+  const end = Date.now() + TIMEOUT_MS;
   while (((await pixels(page, selector)) === wanted) !== isSame) {
     assert.ok(Date.now() < end, `${selector} ${isSame ? "never has the pixels expected" : "does not change"}`);
     await page.waitForTimeout(100);
@@ -147,7 +147,7 @@ task("03 planner: it plays beside", "#/play/maze?variant=small", async (page) =>
   await tabTo(page, "Go");
   await page.keyboard.press("Enter");
   await until(page, () => document.activeElement.matches(".frame"), undefined);
-  await page.waitForSelector('.seat[aria-label="Planner"] .tag.good', { timeout: 2 * PATIENCE_MS });
+  await page.waitForSelector('.seat[aria-label="Planner"] .tag.good', { timeout: 2 * TIMEOUT_MS });
 });
 
 task("04 policy: where it fails", "#/play/obstacle_course?with=policy", async (page) => {
@@ -242,7 +242,7 @@ task("08 compare: two variants under one set of actions", "#/compare/find_object
   await page.keyboard.press("Enter");
   await tabTo(page, "Test what differs in their worlds");
   await page.keyboard.press("Enter");
-  await page.waitForSelector("ul.plain", { timeout: 3 * PATIENCE_MS });
+  await page.waitForSelector("ul.plain", { timeout: 3 * TIMEOUT_MS });
 });
 
 task("09 order: walk along it", "#/order/find_objects", async (page) => {
@@ -292,7 +292,7 @@ task("10 replay: a log on a timeline", "#/replay", async (page) => {
 task("11 mouse: a rock is put on the map, and taken away", "#/author", async (page) => {
   await page.waitForSelector(".editor");
   await choose(page, "New from", "a park");
-  await choose(page, "A click on the map", "puts");
+  await choose(page, "A click on the map", "adds");
   const rocks = () => page.evaluate(() => {
     const { count, placement } = JSON.parse(localStorage.getItem("driftworld.draft")).groups[0];
     return [count, placement.points.values.length];

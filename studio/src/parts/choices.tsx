@@ -23,7 +23,7 @@ export function TaskPicker({ task, pick }: { task: string; pick: (task: string) 
   );
 }
 
-/** A labelled list; an entry is a word, or a value with its text. */
+/** A labelled drop-down list; an entry is a word, or a value with its text. */
 export function Choice({ label, value, entries, pick }: {
   label: string;
   value: string;
@@ -35,8 +35,8 @@ export function Choice({ label, value, entries, pick }: {
       {label}
       <select value={value} onChange={(event) => pick(event.currentTarget.value)}>
         {entries.map((entry) => {
-          const [of, words] = typeof entry === "string" ? [entry, entry] : entry;
-          return <option key={of} value={of}>{words}</option>;
+          const [id, words] = typeof entry === "string" ? [entry, entry] : entry;
+          return <option key={id} value={id}>{words}</option>;
         })}
       </select>
     </label>
@@ -57,8 +57,8 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
 
 /** Explanations of the numbers that select a world. */
 const MEANINGS: Record<string, string> = {
-  Seed: "Worlds are drawn by chance. The same seed draws the same worlds again.",
-  World: "The number of the world among all that this seed draws, from 0.",
+  Seed: "Worlds are random. The same seed always gives the same worlds.",
+  World: "The number of the world among those of this seed, from 0.",
 };
 
 /** Picks a whole number from 0; any other input is rejected and the previous number restored. */
@@ -70,9 +70,9 @@ export function NumberPicker({ label, value, pick }: { label: string; value: num
         type="number" min={0} step={1} value={value}
         onChange={(event) => {
           const typed = event.currentTarget.valueAsNumber;
-          const taken = Number.isSafeInteger(typed) && typed >= 0 ? typed : value;
-          event.currentTarget.value = String(taken);
-          pick(taken);
+          const accepted = Number.isSafeInteger(typed) && typed >= 0 ? typed : value;
+          event.currentTarget.value = String(accepted);
+          pick(accepted);
         }}
       />
     </label>

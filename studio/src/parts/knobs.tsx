@@ -1,11 +1,11 @@
-// Sliders and pickers for the parameters of a task, from the ranges and choices that it declares.
+// Sliders and pickers for the parameters of a task, built from the ranges and choices that it declares.
 
 import type { Value, Variant } from "../engine.ts";
 import type { WrittenParameter } from "../written.ts";
-import { choiceOf, elementWords, wordOf } from "./value.tsx";
+import { choiceOf, elementNames, wordOf } from "./value.tsx";
 
-/** Rounds a number to the digits that a step needs. */
-const rounded = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
+/** Rounds a number to the digits of its slider's step. */
+const roundTo = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
 
 function Slider({ id, low, high, isWhole, value, set }: {
   id: string; low: number; high: number; isWhole: boolean; value: number; set: (value: number) => void;
@@ -14,7 +14,7 @@ function Slider({ id, low, high, isWhole, value, set }: {
   return (
     <input
       id={id} type="range" min={low} max={high} step={step} value={value}
-      onInput={(event) => set(rounded(event.currentTarget.valueAsNumber, step))}
+      onInput={(event) => set(roundTo(event.currentTarget.valueAsNumber, step))}
     />
   );
 }
@@ -24,12 +24,12 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
   const id = `knob-${name}`;
   const isWhole = type === "integer";
   const numbers = Array.isArray(value) && value.every((part) => typeof part === "number") ? (value as number[]) : null;
-  const title = [description, affects.length ? `Affects ${elementWords(affects).toLowerCase()}.` : ""].filter(Boolean).join(" ");
-  const said = choices ? "" : typeof value === "number" ? `${value}${unit ? ` ${unit}` : ""}` : numbers ? numbers.join(" × ") : "";
+  const title = [description, affects.length ? `Affects ${elementNames(affects).toLowerCase()}.` : ""].filter(Boolean).join(" ");
+  const shownValue = choices ? "" : typeof value === "number" ? `${value}${unit ? ` ${unit}` : ""}` : numbers ? numbers.join(" × ") : "";
   const chosen = choiceOf(parameter, value);
   return (
     <div class="knob" title={title}>
-      <div class="top"><label for={id}>{name}</label><output for={id}>{said}</output></div>
+      <div class="top"><label for={id}>{name}</label><output for={id}>{shownValue}</output></div>
       {choices
         ? (
           <select
@@ -67,7 +67,7 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
   );
 }
 
-/** Controls for all parameters that can be set: the shown variant's, and fixed numbers and booleans. */
+/** Controls for the parameters that can be set: those of the shown variant, and fixed numbers and booleans. */
 export function Knobs({ parameters, variant, set }: {
   parameters: WrittenParameter[];
   variant: Variant | null;

@@ -1,4 +1,4 @@
-// Messages on the page: errors, progress, and texts to copy.
+// Messages on the page: errors, and texts to copy.
 
 import { useState } from "preact/hooks";
 import type { ComponentChildren } from "preact";
@@ -8,11 +8,11 @@ import type { Recipe } from "../commands.ts";
 /** Explains an error and how to resolve it; `again` is offered if a retry may help. */
 export function ErrorNote({ error, again, children }: { error: EngineError; again?: () => void; children?: ComponentChildren }) {
   const isStopped = error.code === "engine/stopped" || error.code === "engine/lost";
-  const canPass = /^(engine|page)\//.test(error.code);
+  const canRetry = /^(engine|page)\//.test(error.code);
   return (
     <div class={`note ${isStopped ? "warn" : "bad"}`} role="alert">
       <span>{isStopped ? "Stopped. The simulator starts anew with the next action." : error.message}</span>
-      {again && canPass && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
+      {again && canRetry && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
       {!isStopped && children}
     </div>
   );
@@ -39,14 +39,14 @@ export function saveText(name: string, text: string): void {
 
 /** A button that copies a text and confirms it. */
 export function CopyButton({ text, label, children }: { text: string; label: string; children?: ComponentChildren }) {
-  const [said, setSaid] = useState("");
+  const [status, setStatus] = useState("");
   const copy = async () => {
-    setSaid((await copyText(text)) ? "Copied" : "Not allowed");
-    setTimeout(() => setSaid(""), 1500);
+    setStatus((await copyText(text)) ? "Copied" : "Not allowed");
+    setTimeout(() => setStatus(""), 1500);
   };
   return (
     <button type="button" aria-label={label} onClick={() => void copy()}>
-      <span aria-live="polite">{said || (children ?? "Copy")}</span>
+      <span aria-live="polite">{status || (children ?? "Copy")}</span>
     </button>
   );
 }

@@ -1,6 +1,6 @@
 // On-screen buttons for players without a keyboard.
 
-const PAD: [code: string, sign: string, word: string][] = [
+const PAD: [code: string, symbol: string, label: string][] = [
   ["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "● use", "Use what is ahead"],
   ["ArrowLeft", "←", "Left"], ["ArrowDown", "↓", "Back"], ["ArrowRight", "→", "Right"],
 ];
@@ -8,14 +8,14 @@ const PAD: [code: string, sign: string, word: string][] = [
 export function Pad({ set }: { set: (code: string, isDown: boolean) => void }) {
   return (
     <div class="pad-keys">
-      {PAD.map(([code, sign, word], place) => code
+      {PAD.map(([code, symbol, label], index) => code
         ? (
           <button
-            key={place} type="button" aria-label={word}
+            key={index} type="button" aria-label={label}
             onPointerDown={() => set(code, true)} onPointerUp={() => set(code, false)} onPointerLeave={() => set(code, false)}
-          >{sign}</button>
+          >{symbol}</button>
         )
-        : <span key={place} />)}
+        : <span key={index} />)}
     </div>
   );
 }

@@ -92,7 +92,7 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
     context.stroke();
   }
   const size = Math.max(15, map.agent.radius * scale.pixelsPerMetre * 1.4);
-  for (const [agent, fill, rimColor] of [...others.map((other) => [other, soft!, link!] as const), [map.agent, link!, soft!] as const]) {
+  for (const [agent, fill, outline] of [...others.map((other) => [other, soft!, link!] as const), [map.agent, link!, soft!] as const]) {
     context.save();
     context.translate(...toPixels(scale, [agent.x, agent.y]));
     context.rotate((agent.heading * Math.PI) / 180);
@@ -101,7 +101,7 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
     context.closePath();
     context.fillStyle = fill;
     context.fill();
-    context.strokeStyle = rimColor;
+    context.strokeStyle = outline;
     context.lineWidth = 2;
     context.stroke();
     context.restore();
@@ -111,19 +111,19 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
 /** Whether a media query matches; re-renders when that changes. */
 export function useMedia(media: string): boolean {
   const query = matchMedia(media);
-  const [holds, setHolds] = useState(query.matches);
+  const [matches, setMatches] = useState(query.matches);
   useEffect(() => {
-    const changed = () => setHolds(query.matches);
-    query.addEventListener("change", changed);
-    return () => query.removeEventListener("change", changed);
+    const update = () => setMatches(query.matches);
+    query.addEventListener("change", update);
+    return () => query.removeEventListener("change", update);
   }, []);
-  return holds;
+  return matches;
 }
 
-/** A shared empty list: a new one at each render would redraw the map. */
+/** A shared empty list: a new list at each render would redraw the map. */
 const NONE: never[] = [];
 
-/** A map that describes what is under the pointer; `click` gets the clicked point in metres. */
+/** A map that describes what is under the pointer; `click` gets the clicked point in metres, and the index of the object there. */
 export function FlatMap({ map, trail = NONE, others = NONE, click }: {
   map: WorldMap | null;
   others?: readonly Pose[];
@@ -136,7 +136,7 @@ export function FlatMap({ map, trail = NONE, others = NONE, click }: {
   useLayoutEffect(() => {
     if (canvas.current && map) draw(canvas.current, map, trail, others);
   }, [map, trail, others, isDark]);
-  const place = (event: MouseEvent): [number, number] => {
+  const pointAt = (event: MouseEvent): [number, number] => {
     const box = canvas.current!.getBoundingClientRect();
     const scale = scaleOf(map!, box.width);
     return toMetres(scale, [event.clientX - box.left, event.clientY - box.top]);
@@ -147,9 +147,9 @@ export function FlatMap({ map, trail = NONE, others = NONE, click }: {
       <canvas
         ref={canvas} width={WIDTH} height={WIDTH} role="img" class={click ? "clickable" : ""}
         aria-label={map ? `Map: ${Math.round(map.width)} by ${Math.round(map.depth)} metres, ${count} objects` : "Map"}
-        onMouseMove={(event) => map && setUnder(whatIsAt(map, place(event)).text)}
+        onMouseMove={(event) => map && setUnder(whatIsAt(map, pointAt(event)).text)}
         onMouseLeave={() => setUnder("")}
-        onClick={(event) => map && click?.(place(event), whatIsAt(map, place(event)).object)}
+        onClick={(event) => map && click?.(pointAt(event), whatIsAt(map, pointAt(event)).object)}
       />
       {under && <div class="tip"><span>{under}</span></div>}
     </div>

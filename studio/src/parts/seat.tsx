@@ -1,4 +1,4 @@
-// A player in a world, human or agent: name, view, and progress.
+// Shows a player in a world, human or agent: its name, view and progress.
 
 import { useEffect, useRef } from "preact/hooks";
 import type { ComponentChildren } from "preact";
@@ -10,7 +10,7 @@ import { Picture } from "./pictures.tsx";
 /** The agents that can play beside you. */
 export type Companion = "policy" | "planner";
 export const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
-/** Their descriptions. */
+/** A description of each. */
 export const MEANINGS: Record<Companion, string> = {
   planner: "A program that knows the map plays the same world",
   policy: "A network that learned this task from pictures plays the same world",

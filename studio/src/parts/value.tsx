@@ -9,20 +9,21 @@ export const ELEMENTS: Record<Element, string> = {
   S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation", p: "Initial state", phi: "Observation",
 };
 /** The names of elements, without duplicates. */
-export const elementWords = (elements: Element[]): string => [...new Set(elements.map((element) => ELEMENTS[element]))].join(", ");
+export const elementNames = (elements: Element[]): string => [...new Set(elements.map((element) => ELEMENTS[element]))].join(", ");
 
-let brush: CanvasRenderingContext2D | null = null;
+/** Used to parse names of colours. */
+let context: CanvasRenderingContext2D | null = null;
 
-/** A colour as `#rrggbb`: from a name that the browser knows, as documents know it, or from three numbers in 0..1. */
+/** A colour as `#rrggbb`, from a CSS name or from three numbers in 0..1; null for anything else. */
 export function hexOf(value: Value): string | null {
   if (Array.isArray(value) && value.length === 3 && value.every((part) => typeof part === "number")) {
     return `#${(value as number[]).map((part) => Math.round(Math.min(1, Math.max(0, part)) * 255).toString(16).padStart(2, "0")).join("")}`;
   }
-  brush ??= document.createElement("canvas").getContext("2d");
-  if (typeof value !== "string" || !brush) return null;
-  brush.fillStyle = "#010203";
-  brush.fillStyle = value;
-  return brush.fillStyle === "#010203" ? null : brush.fillStyle;
+  context ??= document.createElement("canvas").getContext("2d");
+  if (typeof value !== "string" || !context) return null;
+  context.fillStyle = "#010203";
+  context.fillStyle = value;
+  return context.fillStyle === "#010203" ? null : context.fillStyle;
 }
 
 /** The index of the choice that equals a value; -1 if none does. */
@@ -30,7 +31,7 @@ export function choiceOf({ choices }: WrittenParameter, value: Value): number {
   return choices?.findIndex(({ name, value: short, full }) => (name !== null && name === value) || same(short, value) || same(full, value)) ?? -1;
 }
 
-/** The text for a value in a list: its name, a short form, or its first characters. */
+/** The text for a value in a list: its name or its JSON, truncated if long. */
 export function wordOf(value: Value, name: string | null = null): string {
   const text = name ?? (value === null ? "none" : typeof value === "string" ? value : oneLine(value));
   return text.length > 60 ? `${text.slice(0, 59)}…` : text;

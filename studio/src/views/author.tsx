@@ -1,16 +1,16 @@
-// The author view: edits a task as text, with sliders for its parameters, a live preview of a world, and a map to click on.
+// The author view: edits a task as text, with sliders for its parameters, a live preview of a world, and a clickable map.
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { EngineError, type Frame, type Json, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { copyOf, draft } from "../draft.ts";
 import type { Editor } from "../editor.ts";
-import { applied, change, type Change, pathOf, type Path, removal, spanAt, spans } from "../json_text.ts";
+import { applyChange, change, type Change, pathOf, type Path, removal, spanAt, spans } from "../json_text.ts";
 import { pointGroups, textLayouts, withLetter } from "../layouts.ts";
 import { hrefOf, type Route } from "../route.ts";
 import { asError, engine } from "../simulator.ts";
 import { TEMPLATES } from "../templates.ts";
-import { written, type WrittenParameter } from "../written.ts";
+import { writtenParameters, type WrittenParameter } from "../written.ts";
 import { Cells } from "../parts/cells.tsx";
 import { Choice, NumberPicker, VariantPicker } from "../parts/choices.tsx";
 import { Knobs } from "../parts/knobs.tsx";
@@ -19,11 +19,11 @@ import { FlatMap, Picture } from "../parts/pictures.tsx";
 
 /** Milliseconds without a key press after which the text is checked. */
 const PAUSE_MS = 150;
-/** Metres within which a click removes a point. */
-const NEAR = 1.5;
+/** A click within this many metres of a point removes it. */
+const REMOVAL_RADIUS = 1.5;
 
 /** The preview of the last valid text. */
-interface Drawn {
+interface Preview {
   document: Json;
   task: Task | null;
   parameters: WrittenParameter[];
@@ -32,21 +32,21 @@ interface Drawn {
 }
 
 /** Draws a world of a text. */
-async function drawn(text: string, kind: string, variant: string, seed: number, index: number): Promise<Drawn> {
+async function drawPreview(text: string, kind: string, variant: string, seed: number, index: number): Promise<Preview> {
   const task = kind === "task" ? await engine.task(text) : null;
   const known = task?.variants.some(({ name }) => name === variant);
   const request: WorldRequest = task ? { task: text, ...(known ? { variant } : {}), seed, index } : { world: text };
   const episode = await engine.open(request, { width: 320, height: 240 });
   try {
-    const parameters = task ? written({ ...task, text }) : [];
+    const parameters = task ? writtenParameters({ ...task, text }) : [];
     return { document: JSON.parse(text) as Json, task, parameters, frame: await episode.frame("agent"), map: await episode.map() };
   } finally {
     void episode.close().catch(() => undefined);
   }
 }
 
-/** The text that an address names: a built-in task, or a file served by `driftworld studio`; null stands for the draft. */
-async function begunWith({ task, options: { file } }: Route): Promise<string | null> {
+/** The text that an address names: a copy of a built-in task, or a file served by `driftworld studio`; null stands for the draft. */
+async function initialText({ task, options: { file } }: Route): Promise<string | null> {
   if (file && /^[\w-]+\.json$/.test(file)) {
     const reply = await fetch(file);
     if (!reply.ok) throw new EngineError("page/file", `${file}: found nothing of this name beside the page; open the task with \`driftworld studio\``);
@@ -59,29 +59,29 @@ export function Author({ route }: { route: Route }) {
   const place = useRef<HTMLDivElement>(null);
   const editor = useRef<Editor | null>(null);
   const context = useRef<{ schema: Json; task: Task | null }>({ schema: {}, task: null });
-  const begun = useRef<string | null>(null);
+  const loadedText = useRef<string | null>(null);
   const [text, setText] = useState(draft.text || TEMPLATES[0]!.text);
   const [variant, setVariant] = useState(route.options["variant"] ?? "");
   const [seed, setSeed] = useState(0);
   const [index, setIndex] = useState(0);
-  const [shown, setShown] = useState<Drawn | null>(null);
+  const [shown, setShown] = useState<Preview | null>(null);
   const [problems, setProblems] = useState<Problem[]>([]);
   const [error, setError] = useState<EngineError | null>(null);
   const [round, setRound] = useState(0);
   const [layoutIndex, setLayoutIndex] = useState(0);
   const [target, setTarget] = useState("");
-  const [said, setSaid] = useState("");
+  const [status, setStatus] = useState("");
 
   useEffect(() => {
     let isOver = false;
     const begin = async () => {
       const { createEditor } = await import("../editor.ts");
-      const named = await begunWith(route);
+      const named = await initialText(route);
       if (isOver || !place.current) return;
       const replaced = draft.replaced();
       editor.current = createEditor(place.current, replaced || text, () => context.current, setText);
-      begun.current = named;
-      if (replaced) setSaid("Undo brings back the text that was here before.");
+      loadedText.current = named;
+      if (replaced) setStatus("Undo brings back the text that was here before.");
       if (named !== null || replaced) editor.current.replace(named ?? text);
       // Show the text before completion is available.
       context.current.schema = await engine.schema("task");
@@ -96,8 +96,8 @@ export function Author({ route }: { route: Route }) {
 
   useEffect(() => {
     draft.keep(text);
-    // An edited task is the draft: neither Back nor a reload returns to the text that the address named.
-    if (begun.current !== null && text !== begun.current) history.replaceState(null, "", hrefOf("author", "draft", { variant }));
+    // Once edited, the text is the draft: neither Back nor a reload returns to the text that the address named.
+    if (loadedText.current !== null && text !== loadedText.current) history.replaceState(null, "", hrefOf("author", "draft", { variant }));
     let isOver = false;
     const look = async () => {
       const found = await engine.validate(text);
@@ -106,7 +106,7 @@ export function Author({ route }: { route: Route }) {
       editor.current?.mark(found.problems);
       setError(null);
       if (found.problems.length) return;
-      const next = await drawn(text, found.kind, variant, seed, index);
+      const next = await drawPreview(text, found.kind, variant, seed, index);
       if (isOver) return;
       context.current.task = next.task;
       setShown(next);
@@ -128,11 +128,11 @@ export function Author({ route }: { route: Route }) {
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
     const effect = path[2] === "default"
-      ? `The default of ${parameter.name} is changed in the text, and so is every variant that names no value of its own.`
+      ? `The default of ${parameter.name} is changed in the text, and so is every variant that sets no value of its own.`
       : "";
-    setSaid(edit(path, value, "drag") ? effect : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
+    setStatus(edit(path, value, "drag") ? effect : `${variant} belongs to a family: change the family in the text, or choose another variant.`);
   };
-  const showPlace = (path: Path) => {
+  const showPath = (path: Path) => {
     const span = spanAt(spans(text), path);
     if (span) editor.current?.show(span.from, span.to);
   };
@@ -143,21 +143,21 @@ export function Author({ route }: { route: Route }) {
   const group = groups.find(({ name }) => name === target);
   const clickMap = (point: [number, number], object: number | null) => {
     if (!group) {
-      if (object !== null) showPlace(shown?.task ? placeOf(shown, object) : ["objects", object]);
+      if (object !== null) showPath(shown?.task ? pathOfObject(shown, object) : ["objects", object]);
       return;
     }
     const before = editor.current?.text() ?? text;
     // The text may be newer than the preview.
     const now = spans(before) && pointGroups(JSON.parse(before) as Json).find(({ name }) => name === target);
     if (!now) return;
-    const here = now.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= NEAR);
-    const places = here < 0
+    const here = now.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= REMOVAL_RADIUS);
+    const edited = here < 0
       ? change(before, [...now.path, now.points.length], point.map((metres) => Math.round(metres * 10) / 10))
       : removal(before, [...now.path, here]);
-    if (!places) return;
-    const after = applied(before, places);
+    if (!edited) return;
+    const after = applyChange(before, edited);
     const count = now.count && change(after, now.count, now.points.length + (here < 0 ? 1 : -1));
-    const whole = count ? applied(after, count) : after;
+    const whole = count ? applyChange(after, count) : after;
     editor.current?.change(minimal(before, whole));
   };
 
@@ -192,7 +192,7 @@ export function Author({ route }: { route: Route }) {
           <button type="button" onClick={() => editor.current?.redo()}>Redo</button>
           <button type="button" onClick={() => saveText(draft.file, draft.text)}>Save {draft.file}</button>
           {problems.length > 0
-            ? <button type="button" class="main" disabled title="First mend what is listed below the text.">Mend the text to play</button>
+            ? <button type="button" class="main" disabled title="First fix the problems listed below the text.">Fix the text to play</button>
             : <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>}
         </div>
       </div>
@@ -237,7 +237,7 @@ export function Author({ route }: { route: Route }) {
             {groups.length > 0 && (
               <Choice
                 label="A click on the map" value={target} pick={setTarget}
-                entries={[["", "finds what is there in the text"], ...groups.map(({ name }) => [name, `puts one of ${name} there, or takes it away`] as const)]}
+                entries={[["", "finds the object's text"], ...groups.map(({ name }) => [name, `adds a point to ${name}, or removes it`] as const)]}
               />
             )}
           </section>
@@ -257,7 +257,7 @@ export function Author({ route }: { route: Route }) {
           <section class="card pad stack" aria-label="Parameters">
             <h2>{current ? `Parameters of ${current.name}` : "Parameters"}</h2>
             <Knobs parameters={shown?.parameters ?? []} variant={current} set={setKnob} />
-            <p class="small faint" role="status">{said}</p>
+            <p class="small faint" role="status">{status}</p>
           </section>
         </div>
       </div>
@@ -265,8 +265,8 @@ export function Author({ route }: { route: Route }) {
   );
 }
 
-/** The path of an object's group in a task: the first group with its class and tag. */
-function placeOf({ document, map }: Drawn, object: number): Path {
+/** The path of an object's group in a task, taken to be the first group with its class and tag. */
+function pathOfObject({ document, map }: Preview, object: number): Path {
   const found = map.objects.find(({ index }) => index === object);
   const groups = (document as { groups?: { object?: { class?: Json; tag?: Json } }[] }).groups ?? [];
   const place = groups.findIndex((group) => group.object?.class === found?.class && (!found?.tag || !group.object?.tag || group.object.tag === found.tag));

@@ -1,4 +1,4 @@
-// The compare view: two variants of a task side by side, with the same seed and actions, and their distance in each element.
+// The compare view: plays two variants of a task side by side, with the same seed and actions, and shows their distance in each element.
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
@@ -7,7 +7,7 @@ import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { outlines } from "../difference.ts";
 import { draft } from "../draft.ts";
-import { isAsking, useHeldKeys } from "../keys.ts";
+import { hasInput, useHeldKeys } from "../keys.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, useAnswer } from "../simulator.ts";
@@ -16,13 +16,13 @@ import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { Pad } from "../parts/pad.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
-import { written, type WrittenParameter } from "../written.ts";
-import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
+import { writtenParameters, type WrittenParameter } from "../written.ts";
+import { ELEMENTS, elementNames, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
-/** Verdicts on the parameters' declarations, from a test of the worlds. */
+/** The verdicts of a test that compares what parameters declare to affect with what they change in worlds. */
 const VERDICTS: Record<Found["verdict"], string> = {
-  sound: "just what the parameters declare",
+  sound: "exactly what the parameters declare",
   idle: "a parameter changes nothing",
   contradicted: "more than the parameters declare",
 };
@@ -62,7 +62,7 @@ function Table({ heads, rows }: { heads: string[]; rows: ComponentChildren[][] }
 function Elements({ distance }: { distance: Distance }) {
   const all = Object.entries(distance.elements) as [Element, number | null][];
   const entries = all.flatMap(([element, value]) => (value === null ? [] : [{ element, value }]));
-  const most = Math.max(1e-9, ...entries.map(({ value }) => value));
+  const largest = Math.max(1e-9, ...entries.map(({ value }) => value));
   const parts = partsOf(distance);
   return (
     <div class="stage">
@@ -73,21 +73,21 @@ function Elements({ distance }: { distance: Distance }) {
         {entries.length > 0 && (
           <Table
             heads={["Element", "Distance", ""]}
-            rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / most} />])}
+            rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / largest} />])}
           />
         )}
       </div>
       <div class="stack">
-        <h2>What makes it</h2>
+        <h2>Where it comes from</h2>
         {entries.length === 0 && (
           <p class="small">By {distance.by}, worlds are compared as a whole: the number has no parts. Other measures split theirs by element.</p>
         )}
-        {entries.length > 0 && parts.length === 0 && <p class="faint small">Nothing differs that is measured by {distance.by}.</p>}
+        {entries.length > 0 && parts.length === 0 && <p class="faint small">By {distance.by}, nothing differs.</p>}
         {parts.length > 0 && (
           <Table
             heads={["Part", "Counts for", "Measure", "Share"]}
             rows={parts.map(({ name, measure, elements, share }) => [
-              <code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)}\u00a0%`,
+              <code>{name}</code>, elementNames(elements), measure, `${(100 * share).toFixed(1)}\u00a0%`,
             ])}
           />
         )}
@@ -99,7 +99,7 @@ function Elements({ distance }: { distance: Distance }) {
 /** The parameters in which two variants differ, with both values. */
 function differing(task: Task, a: Variant | undefined, b: Variant | undefined) {
   const valueIn = (variant: Variant | undefined, parameter: WrittenParameter) => variant?.values[parameter.name] ?? parameter.value;
-  return written(task)
+  return writtenParameters(task)
     .filter(({ role }) => role === "variant")
     .map((parameter) => ({ parameter, values: [valueIn(a, parameter), valueIn(b, parameter)] as const }))
     .filter(({ values: [left, right] }) => !same(left, right));
@@ -120,7 +120,7 @@ export function Compare({ route }: { route: Route }) {
   const [round, setRound] = useState(0);
   const [isOutlined, setOutlined] = useState(true);
   const [leader, setLeader] = useState<"keys" | "planner">("keys");
-  const [turn, setTurn] = useState(0);
+  const [steps, setSteps] = useState(0);
   const isReady = names.length > 0;
 
   useEffect(() => {
@@ -146,11 +146,11 @@ export function Compare({ route }: { route: Route }) {
   });
   useClock(pair !== null && !pair.every((session) => session.ended), 1 / (pair?.[0].episode.actionSpace.step_seconds ?? 0.1), async () => {
     const [left, right] = pair!;
-    const asked = keys.read();
-    if (leader === "keys" && !isAsking(asked)) return;
+    const input = keys.read();
+    if (leader === "keys" && !hasInput(input)) return;
     if (leader === "keys") {
-      await left.advance(asked);
-      await right.advance(asked);
+      await left.advance(input);
+      await right.advance(input);
     } else {
       // The planner acts in the first world; the second gets the same actions.
       const action = left.ended ? null : await left.episode.choose("planner");
@@ -158,14 +158,14 @@ export function Compare({ route }: { route: Route }) {
       await left.take(action);
       await right.take(action);
     }
-    setTurn((last) => last + 1);
+    setSteps((last) => last + 1);
   }, (reason) => {
     setPair(null);
     setError(asError(reason));
   });
   const lines = useMemo(
     () => (isOutlined && pair?.[0].frame && pair[1].frame ? outlines(pair[0].frame, pair[1].frame) : []),
-    [isOutlined, pair, turn],
+    [isOutlined, pair, steps],
   );
 
   const measures = useAnswer(() => engine.measures(), []).value ?? ["parameters"];
@@ -173,10 +173,10 @@ export function Compare({ route }: { route: Route }) {
     isReady && a && b ? () => engine.distance(requestOf(task, a, seed, index), requestOf(task, b, seed, index), { by }) : null,
     [task, a, b, by, isReady, round],
   );
-  const [isMeasured, setMeasured] = useState("");
+  const [testedKey, setTestedKey] = useState("");
   const key = `${task} ${a} ${b} ${round}`;
   const elements = useAnswer(
-    isMeasured === key ? () => engine.elements(task === "draft" ? draft.text : task, a, b, { worlds: commands.ELEMENT_WORLDS }) : null, [isMeasured, key],
+    testedKey === key ? () => engine.elements(task === "draft" ? draft.text : task, a, b, { worlds: commands.ELEMENT_WORLDS }) : null, [testedKey, key],
   );
   const file = task === "draft" ? draft.file : task;
   const rows = about.value ? differing(about.value, variants.find(({ name }) => name === a), variants.find(({ name }) => name === b)) : [];
@@ -185,7 +185,7 @@ export function Compare({ route }: { route: Route }) {
       <div class="head">
         <div>
           <h1>Compare</h1>
-          <p>Two variants under one seed. What you do is done in both; what looks different is outlined.</p>
+          <p>Two variants with the same seed. Your actions are taken in both; whatever looks different is outlined.</p>
         </div>
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
@@ -221,7 +221,7 @@ export function Compare({ route }: { route: Route }) {
           <Table
             heads={["Parameter", a, b, "Affects"]}
             rows={rows.map(({ parameter, values }) => [
-              <code>{parameter.name}</code>, ...values.map((value) => <ShownValue parameter={parameter} value={value} />), elementWords(parameter.affects),
+              <code>{parameter.name}</code>, ...values.map((value) => <ShownValue parameter={parameter} value={value} />), elementNames(parameter.affects),
             ])}
           />
         </section>
@@ -229,7 +229,7 @@ export function Compare({ route }: { route: Route }) {
       <section class="card pad stack" aria-label="Distance">
         <div class="row spread">
           <Choice label="Measured by" value={by} entries={measures} pick={(to) => go({ by: to })} />
-          <button type="button" disabled={!isReady || elements.pending} onClick={() => setMeasured(key)}>Test what differs in their worlds</button>
+          <button type="button" disabled={!isReady || elements.pending} onClick={() => setTestedKey(key)}>Test what differs in their worlds</button>
         </div>
         {distance.error && (
           <ErrorNote error={distance.error} again={() => setRound((last) => last + 1)}>
@@ -245,12 +245,12 @@ export function Compare({ route }: { route: Route }) {
         {elements.value && (
           <div class="stack">
             <h3>
-              Seen in their worlds:{" "}
+              Differences in their worlds:{" "}
               <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{VERDICTS[elements.value.verdict]}</span>
             </h3>
-            <p class="faint small">For each element, the first difference that was found: left beside right.</p>
+            <p class="faint small">For each element, the first difference found, with the left value beside the right one.</p>
             <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{ELEMENTS[witness.element]}:</b> {witness.message}</li>)}</ul>
-            {elements.value.measured.length === 0 && <p class="faint small">No element was seen to differ.</p>}
+            {elements.value.measured.length === 0 && <p class="faint small">No element differs in the worlds tested.</p>}
             {elements.value.contradictions.map((text) => <p key={text} class="note bad"><span>{text}</span></p>)}
             {elements.value.idle.length > 0 && <p class="faint small">Without effect here: {elements.value.idle.join(", ")}.</p>}
           </div>

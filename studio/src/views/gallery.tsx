@@ -12,24 +12,24 @@ import { ErrorNote } from "../parts/notes.tsx";
 import { MEANINGS } from "../parts/seat.tsx";
 
 const SIZE = { width: 280, height: 210 };
-/** Steps of the planner before a card's picture is taken: many worlds start in front of a wall. */
-const GLANCE = 12;
+/** The planner takes this many steps before a card's picture is drawn, because many worlds start in front of a wall. */
+const STEPS_BEFORE_PICTURE = 12;
 
-/** The picture of a card: drawn when it scrolls into view, and animated while `isLive`. */
+/** The picture of a card: drawn once it scrolls into view, and animated while `isLive`. */
 function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
-  const place = useRef<HTMLSpanElement>(null);
+  const container = useRef<HTMLSpanElement>(null);
   const session = useRef<Session | null>(null);
   const [frame, setFrame] = useState<Frame | null>(null);
   const [isLoaded, setLoaded] = useState(false);
   const variant = card.examples[0]?.variant;
   const request = { task: card.name, ...(variant ? { variant } : {}) };
   useEffect(() => {
-    const watch = new IntersectionObserver((entries) => {
+    const observer = new IntersectionObserver((entries) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
-      watch.disconnect();
+      observer.disconnect();
       engine.open(request, SIZE)
         .then(async (episode) => {
-          for (let step = 0; step < GLANCE; step += 1) {
+          for (let step = 0; step < STEPS_BEFORE_PICTURE; step += 1) {
             const { terminated, truncated } = await episode.act("planner");
             if (terminated || truncated) break;
           }
@@ -38,8 +38,8 @@ function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
         })
         .catch(() => undefined);
     }, { rootMargin: "200px" });
-    if (place.current) watch.observe(place.current);
-    return () => watch.disconnect();
+    if (container.current) observer.observe(container.current);
+    return () => observer.disconnect();
   }, []);
   useEffect(() => {
     if (!isLive) return undefined;
@@ -57,36 +57,36 @@ function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
     };
   }, [isLive]);
   useClock(isLive && isLoaded, 20, async () => {
-    const walker = session.current;
-    if (!walker || walker.ended) return;
-    await walker.advance({ ahead: 0, turn: 0, interact: false });
-    setFrame(walker.frame);
+    const current = session.current;
+    if (!current || current.ended) return;
+    await current.advance({ ahead: 0, turn: 0, interact: false });
+    setFrame(current.frame);
   }, () => setLoaded(false));
-  return <span ref={place}><Picture frame={frame} label="" /></span>;
+  return <span ref={container}><Picture frame={frame} label="" /></span>;
 }
 
 function Card({ card, isTrained }: { card: TaskCard; isTrained: boolean }) {
-  const [isLooked, setLooked] = useState(false);
-  const isLive = isLooked && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const [isActive, setActive] = useState(false);
+  const isLive = isActive && !matchMedia("(prefers-reduced-motion: reduce)").matches;
   const variant = card.examples[0]?.variant;
-  const go = (companion?: string) => hrefOf("play", card.name, { variant, with: companion });
+  const linkTo = (companion?: string) => hrefOf("play", card.name, { variant, with: companion });
   return (
     <li>
       <article
-        class="card" onMouseEnter={() => setLooked(true)} onMouseLeave={() => setLooked(false)}
-        onFocusCapture={() => setLooked(true)} onBlurCapture={() => setLooked(false)}
+        class="card" onMouseEnter={() => setActive(true)} onMouseLeave={() => setActive(false)}
+        onFocusCapture={() => setActive(true)} onBlurCapture={() => setActive(false)}
       >
-        <a class="shot" href={go()} aria-label={`Play ${card.name}`}><Shot card={card} isLive={isLive} /></a>
+        <a class="shot" href={linkTo()} aria-label={`Play ${card.name}`}><Shot card={card} isLive={isLive} /></a>
         <div class="body">
           <h3>{card.name}</h3>
           <p>{card.description}</p>
         </div>
         <div class="foot">
-          <a class="button quiet" href={go()} tabIndex={-1} aria-hidden="true">Play</a>
+          <a class="button quiet" href={linkTo()} tabIndex={-1} aria-hidden="true">Play</a>
           {isTrained && (
-            <a class="button quiet" href={go("policy")} title={MEANINGS.policy} aria-label={`Play ${card.name} beside the trained policy`}>Policy</a>
+            <a class="button quiet" href={linkTo("policy")} title={MEANINGS.policy} aria-label={`Play ${card.name} beside the trained policy`}>Policy</a>
           )}
-          <a class="button quiet" href={go("planner")} title={MEANINGS.planner} aria-label={`Play ${card.name} beside the planner`}>Planner</a>
+          <a class="button quiet" href={linkTo("planner")} title={MEANINGS.planner} aria-label={`Play ${card.name} beside the planner`}>Planner</a>
         </div>
       </article>
     </li>
@@ -96,12 +96,12 @@ function Card({ card, isTrained }: { card: TaskCard; isTrained: boolean }) {
 export function Gallery({ route }: { route: Route }) {
   const cards = useAnswer(() => engine.tasks(), []);
   const trained = useAnswer(trainedTasks, []).value ?? [];
-  const [words, setWords] = useState(route.options["q"] ?? "");
+  const [query, setQuery] = useState(route.options["q"] ?? "");
   const [group, setGroup] = useState("");
   const all = cards.value ?? [];
-  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const keywords = query.toLowerCase().split(/\s+/).filter(Boolean);
   const shown = all.filter((card) => (!group || card.group === group)
-    && wanted.every((word) => `${card.name} ${card.group} ${card.description}`.toLowerCase().includes(word)));
+    && keywords.every((keyword) => `${card.name} ${card.group} ${card.description}`.toLowerCase().includes(keyword)));
   const groups = [...new Set(all.map((card) => card.group))];
   const variants = all.reduce((sum, card) => sum + card.variants.length, 0);
   return (
@@ -111,13 +111,13 @@ export function Gallery({ route }: { route: Route }) {
           <h1>Gallery</h1>
           <p>
             {all.length ? `${all.length} tasks with ${variants} variants. ` : ""}
-            Choose one to play it in first person; the same worlds as in training, to the bit.
+            Choose one to play it in first person. Its worlds are identical, bit for bit, to those used in training.
           </p>
         </div>
         <div class="row end">
           <label class="field">
             Search
-            <input type="search" value={words} placeholder="maze, door, memory …" onInput={(event) => setWords(event.currentTarget.value)} />
+            <input type="search" value={query} placeholder="maze, door, memory …" onInput={(event) => setQuery(event.currentTarget.value)} />
           </label>
           <Choice label="Group" value={group} entries={[["", "all"], ...groups]} pick={setGroup} />
         </div>
@@ -126,8 +126,8 @@ export function Gallery({ route }: { route: Route }) {
       {all.length > 0 && shown.length === 0 && (
         <div class="empty">
           <h2>No task matches</h2>
-          <p>None of {all.length} tasks has “{words}” in its name, group or description.</p>
-          <button type="button" onClick={() => { setWords(""); setGroup(""); }}>Show all</button>
+          <p>None of {all.length} tasks has “{query}” in its name, group or description.</p>
+          <button type="button" onClick={() => { setQuery(""); setGroup(""); }}>Show all</button>
         </div>
       )}
       {groups.filter((name) => shown.some((card) => card.group === name)).map((name) => (

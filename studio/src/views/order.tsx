@@ -1,4 +1,4 @@
-// The order view: the variants of a task as a contact sheet, as a map of their distances, and as an ordered path on it.
+// The order view: shows the variants of a task as a contact sheet and on a map of their distances, with the chosen order as a path.
 
 import { useEffect, useState } from "preact/hooks";
 import type { Frame, Matrix, OrderMethod } from "../engine.ts";
@@ -12,22 +12,22 @@ import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { Picture, useMedia } from "../parts/pictures.tsx";
 
 const METHODS: Partial<Record<OrderMethod, string>> = {
-  gradual: "Small steps: the shortest way through all variants.",
-  outward: "From the start to ever farther variants.",
-  abrupt: "Large steps: the longest way, so that neighbours are unlike each other.",
-  farthest: "Each time the variant farthest from all before it.",
-  nearest: "Each time the nearest variant that is left.",
-  "two-opt": "A short way that is found fast: that of nearest, with its detours mended.",
-  random: "By chance, to compare the others with.",
+  gradual: "Small steps: the shortest path through all variants.",
+  outward: "From the start to variants farther and farther away.",
+  abrupt: "Large steps: the longest path, on which neighbours differ as much as possible.",
+  farthest: "Always next: the variant farthest from all earlier ones.",
+  nearest: "Always next: the nearest remaining variant.",
+  "two-opt": "A short path found quickly: the one of nearest, with its detours removed.",
+  random: "A random order, as a baseline for the others.",
   given: "As the task lists them, the start first.",
 };
-/** Maximum number of variants shown at first: more take longer, and their names overlap. */
+/** Maximum number of variants shown at first: more would take longer, and their names would overlap. */
 const MAX_SHOWN = 12;
 const SIZE = { width: 240, height: 180 };
 
-const short = (label: string): string => label.slice(label.indexOf("#") + 1);
+const variantOf = (label: string): string => label.slice(label.indexOf("#") + 1);
 
-/** Pictures of a world of each variant, added as they are drawn. */
+/** A picture of one world of each variant; pictures are added as they are drawn. */
 function useFrames(task: string, variants: string[], seed: number, index: number): Map<string, Frame> {
   const [frames, setFrames] = useState(new Map<string, Frame>());
   const key = variants.join(" ");
@@ -51,33 +51,33 @@ function useFrames(task: string, variants: string[], seed: number, index: number
   return frames;
 }
 
-/** Variants as points that approximate their distances, numbered in the order of a path. */
-function DistanceMap({ matrix, way, now, pick }: { matrix: Matrix; way: string[]; now: string; pick: (variant: string) => void }) {
+/** Variants as points, numbered along the path. Distances between points approximate those between variants. */
+function DistanceMap({ matrix, path, selected, pick }: { matrix: Matrix; path: string[]; selected: string; pick: (variant: string) => void }) {
   const width = useMedia("(max-width: 40rem)") ? 340 : 560;
   const [xs, ys] = [matrix.points.map(([x]) => x), matrix.points.map(([, y]) => y)];
   const [left, top] = [Math.min(...xs), Math.max(...ys)];
-  const [across, along] = [Math.max(...xs) - left, top - Math.min(...ys)];
-  const scale = Math.min((width - 120) / (across || 1), 340 / (along || 1));
-  const height = Math.max(160, along * scale + 80);
-  const inset = (width - across * scale) / 2;
-  const names = matrix.labels.map(short);
-  const stops = way.flatMap((variant, place) => {
-    const at = names.indexOf(variant);
-    const texts = [`${place + 1} ${variant}`, `${place + 1}`];
-    return at < 0 ? [] : [{ variant, texts, x: inset + (xs[at]! - left) * scale, y: 40 + (top - ys[at]!) * scale }];
+  const [spanX, spanY] = [Math.max(...xs) - left, top - Math.min(...ys)];
+  const scale = Math.min((width - 120) / (spanX || 1), 340 / (spanY || 1));
+  const height = Math.max(160, spanY * scale + 80);
+  const inset = (width - spanX * scale) / 2;
+  const names = matrix.labels.map(variantOf);
+  const stops = path.flatMap((variant, rank) => {
+    const index = names.indexOf(variant);
+    const texts = [`${rank + 1} ${variant}`, `${rank + 1}`];
+    return index < 0 ? [] : [{ variant, texts, x: inset + (xs[index]! - left) * scale, y: 40 + (top - ys[index]!) * scale }];
   });
-  // The selected variant always has a label.
-  const first = stops.findIndex(({ variant }) => variant === now);
-  const ranked = [...stops.slice(first, first + 1), ...stops.filter((_, place) => place !== first)];
-  const labels = placeLabels(ranked, width, height);
+  // The selected variant chooses its label first, so it always has one.
+  const first = stops.findIndex(({ variant }) => variant === selected);
+  const sorted = [...stops.slice(first, first + 1), ...stops.filter((_, index) => index !== first)];
+  const labels = placeLabels(sorted, width, height);
   return (
     <svg class="plot points" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Map of the distances of ${names.length} variants`}>
       <polyline class="way" points={stops.map(({ x, y }) => `${x},${y}`).join(" ")} />
-      {ranked.map(({ variant, texts, x, y }, place) => (
+      {sorted.map(({ variant, texts, x, y }, index) => (
         <g key={variant} onClick={() => pick(variant)}>
           <title>{texts[0]}</title>
-          <circle class={`dot ${variant === now ? "now" : ""}`} cx={x} cy={y} r={variant === now ? 7 : 5} />
-          {labels[place] && <text x={labels[place].x} y={labels[place].y} text-anchor="middle">{labels[place].text}</text>}
+          <circle class={`dot ${variant === selected ? "now" : ""}`} cx={x} cy={y} r={variant === selected ? 7 : 5} />
+          {labels[index] && <text x={labels[index].x} y={labels[index].y} text-anchor="middle">{labels[index].text}</text>}
         </g>
       ))}
     </svg>
@@ -107,18 +107,18 @@ export function Order({ route }: { route: Route }) {
   );
   const frames = useFrames(task, variants, seed, index);
   const measures = useAnswer(() => engine.measures(), []).value ?? ["parameters"];
-  const way = order.value?.labels.map(short) ?? variants;
-  const [at, setAt] = useState(0);
-  const now = way[Math.min(at, way.length - 1)] ?? "";
-  useEffect(() => setAt(0), [task, method, start]);
+  const path = order.value?.labels.map(variantOf) ?? variants;
+  const [position, setPosition] = useState(0);
+  const selected = path[Math.min(position, path.length - 1)] ?? "";
+  useEffect(() => setPosition(0), [task, method, start]);
   const error = about.error ?? matrix.error ?? order.error;
-  const description = about.value?.variants.find(({ name }) => name === now)?.description ?? "";
+  const description = about.value?.variants.find(({ name }) => name === selected)?.description ?? "";
   return (
     <>
       <div class="head">
         <div>
           <h1>Order</h1>
-          <p>Variants on a flat map of their distances, and an order to walk along it: what is like what, and what comes next.</p>
+          <p>Shows which variants are alike, on a flat map of their distances, and an order in which to go through them.</p>
         </div>
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
@@ -138,33 +138,33 @@ export function Order({ route }: { route: Route }) {
             </p>
           )}
           {matrix.pending && <p class="faint">Measuring …</p>}
-          {matrix.value && <DistanceMap matrix={matrix.value} way={way} now={now} pick={(variant) => setAt(Math.max(0, way.indexOf(variant)))} />}
+          {matrix.value && <DistanceMap matrix={matrix.value} path={path} selected={selected} pick={(variant) => setPosition(Math.max(0, path.indexOf(variant)))} />}
           {all.length === 1 && <p class="faint">There is one variant only; an order needs two.</p>}
         </section>
-        <section class="card pad stack" aria-label="The way">
+        <section class="card pad stack" aria-label="The path">
           <div class="row spread">
-            <h2>{now || "–"}</h2>
-            <span class="faint small number">{at + 1} of {way.length}</span>
+            <h2>{selected || "–"}</h2>
+            <span class="faint small number">{position + 1} of {path.length}</span>
           </div>
-          <div class="still"><Picture frame={frames.get(now) ?? null} label={`A world of ${now}`} /></div>
+          <div class="still"><Picture frame={frames.get(selected) ?? null} label={`A world of ${selected}`} /></div>
           <p class="small faint">{description}</p>
           <input
-            type="range" aria-label="Along the order" aria-valuetext={now} min={0} max={Math.max(0, way.length - 1)} value={at}
-            onInput={(event) => setAt(event.currentTarget.valueAsNumber)}
+            type="range" aria-label="Along the order" aria-valuetext={selected} min={0} max={Math.max(0, path.length - 1)} value={position}
+            onInput={(event) => setPosition(event.currentTarget.valueAsNumber)}
           />
           <p class="small">
-            {order.value ? `${METHODS[method as OrderMethod]} The whole way is ${order.value.length.toFixed(3)}.` : "Not ordered yet: as the task lists them."}
+            {order.value ? `${METHODS[method as OrderMethod]} The path's length is ${order.value.length.toFixed(3)}.` : "Not ordered yet: shown as the task lists them."}
           </p>
           <ol class="picks" aria-label="Variants in order, each with its distance from the one before">
-            {way.map((variant, place) => (
+            {path.map((variant, rank) => (
               <li key={variant}>
-                <button type="button" {...(variant === now ? { "aria-current": "step" as const } : {})} onClick={() => setAt(place)}>
-                  <span>{order.value && place + 1} {variant}</span><span class="number faint">{order.value?.steps[place - 1]?.toFixed(3)}</span>
+                <button type="button" {...(variant === selected ? { "aria-current": "step" as const } : {})} onClick={() => setPosition(rank)}>
+                  <span>{order.value && rank + 1} {variant}</span><span class="number faint">{order.value?.steps[rank - 1]?.toFixed(3)}</span>
                 </button>
               </li>
             ))}
           </ol>
-          <a class="button" href={hrefOf("play", task, { variant: now, seed: seed || undefined })}>Play {now}</a>
+          <a class="button" href={hrefOf("play", task, { variant: selected, seed: seed || undefined })}>Play {selected}</a>
           <Recipes of={{ "This order": commands.order(task === "draft" ? draft.file : task, variants, by, method, start) }} />
         </section>
       </div>
@@ -180,10 +180,10 @@ export function Order({ route }: { route: Route }) {
           )}
         </div>
         <ul class="sheet">
-          {way.map((variant, place) => (
+          {path.map((variant, rank) => (
             <li key={variant}>
-              <button type="button" aria-pressed={variant === now} onClick={() => setAt(place)}>
-                <Picture frame={frames.get(variant) ?? null} label="" /><span>{order.value && place + 1} {variant}</span>
+              <button type="button" aria-pressed={variant === selected} onClick={() => setPosition(rank)}>
+                <Picture frame={frames.get(variant) ?? null} label="" /><span>{order.value && rank + 1} {variant}</span>
               </button>
             </li>
           ))}

@@ -1,12 +1,12 @@
-// The play view: a world to walk in, alone or next to the trained policy and the planner. An episode can be shared as a link.
+// The play view: you walk in a world, alone or beside the trained policy and the planner, and can share the episode as a link.
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import type { EngineError } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { draft } from "../draft.ts";
-import { HELD, isAsking, useHeldKeys } from "../keys.ts";
-import { amount, payOf } from "../pay.ts";
+import { CONTROL_KEYS, hasInput, useHeldKeys } from "../keys.ts";
+import { amount, describeRewards } from "../pay.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
@@ -36,7 +36,7 @@ export function Play({ route }: { route: Route }) {
   const [round, setRound] = useState(0);
   const [state, setState] = useState<"waiting" | "running" | "paused">("waiting");
   const [speed, setSpeed] = useState(1);
-  const [shared, setShared] = useState("");
+  const [shareStatus, setShareStatus] = useState("");
   const [link, setLink] = useState("");
   const [, redraw] = useState(0);
   const trail = useRef<[number, number][]>([]);
@@ -49,19 +49,19 @@ export function Play({ route }: { route: Route }) {
     const open = async () => {
       const you = await Session.open(request, null);
       opened = [you];
-      const found = [{ name: "You", session: you }];
+      const next = [{ name: "You", session: you }];
       for (const name of companions) {
         const agent = name === "planner" ? "planner" : await trainedAgent(task);
         const session = await Session.open(request, agent);
         opened.push(session);
-        found.push({ name: NAMES[name], session });
+        next.push({ name: NAMES[name], session });
       }
       if (isOver) return;
       trail.current = [];
-      setSeats(found);
+      setSeats(next);
       setError(null);
       setState("waiting");
-      setShared("");
+      setShareStatus("");
       setLink("");
     };
     open().catch((reason: unknown) => {
@@ -79,16 +79,16 @@ export function Play({ route }: { route: Route }) {
     if (code === "KeyR") again();
     else if (code === "KeyN") go({ index: index + 1 });
     else if (code === "KeyP" || code === "Escape") setState((last) => (last === "running" ? "paused" : "running"));
-    else if (HELD.includes(code)) setState("running");
+    else if (CONTROL_KEYS.includes(code)) setState("running");
   });
   const you = seats[0]?.session;
   const isPaused = state === "paused" || (you?.ended ?? false);
   const isAllOver = seats.every(({ session }) => session.ended);
   const rate = speed / (you?.episode.actionSpace.step_seconds ?? 0.1);
   useClock(state === "running" && seats.length > 0 && !isAllOver, rate, async () => {
-    const asked = keys.read();
-    if (you && !you.ended && !you.canWait && !isAsking(asked)) return;
-    for (const { session } of seats) await session.advance(asked);
+    const input = keys.read();
+    if (you && !you.ended && !you.canWait && !hasInput(input)) return;
+    for (const { session } of seats) await session.advance(input);
     if (you) trail.current = [...trail.current, [you.step.agent.x, you.step.agent.y]];
     redraw((last) => last + 1);
   }, (reason) => {
@@ -105,7 +105,7 @@ export function Play({ route }: { route: Route }) {
     const { text, steps } = await fragment();
     const address = `${location.href.split("#")[0]}#${text}`;
     setLink(address);
-    setShared(`${(await copyText(address)) ? "Copied" : "Ready to copy"}: ${text.length} characters for ${steps} step${steps === 1 ? "" : "s"}`);
+    setShareStatus(`${(await copyText(address)) ? "Copied" : "Ready to copy"}: ${text.length} characters for ${steps} step${steps === 1 ? "" : "s"}`);
   };
   const watch = async () => {
     location.hash = (await fragment()).text;
@@ -114,18 +114,18 @@ export function Play({ route }: { route: Route }) {
   const searched = `${task} ${variant} ${seed}`;
   const [search, setSearch] = useState({ of: "", text: "" });
   const findFailure = async () => {
-    const who = isTrained ? "policy" : "planner";
-    const say = (text: string) => setSearch({ of: searched, text });
+    const tested = isTrained ? "policy" : "planner";
+    const report = (text: string) => setSearch({ of: searched, text });
     // If the agent already plays beside you, you can see how it does in this world, so start from the next one.
-    const from = index + (companions.includes(who) ? 1 : 0);
-    say(`Trying up to ${MAX_WORLDS_SEARCHED} worlds …`);
+    const from = index + (companions.includes(tested) ? 1 : 0);
+    report(`Trying up to ${MAX_WORLDS_SEARCHED} worlds …`);
     try {
       const failure = await engine.findFailure(requestOf(task, variant, seed, from), isTrained ? await trainedAgent(task) : "planner", { worlds: MAX_WORLDS_SEARCHED });
       const found = failure && "index" in failure.request ? failure.request.index : undefined;
-      say(found === undefined ? `It succeeds in worlds ${from} to ${from + MAX_WORLDS_SEARCHED - 1}.` : `It fails in world ${found}. Press Go to watch.`);
-      if (found !== undefined) go({ index: found, with: who });
+      report(found === undefined ? `It succeeds in worlds ${from} to ${from + MAX_WORLDS_SEARCHED - 1}.` : `It fails in world ${found}. Press Go to watch.`);
+      if (found !== undefined) go({ index: found, with: tested });
     } catch (reason) {
-      say(asError(reason).message);
+      report(asError(reason).message);
     }
   };
   const guarded = (action: () => Promise<void>) => () => void action().catch((reason: unknown) => setError(asError(reason)));
@@ -140,7 +140,7 @@ export function Play({ route }: { route: Route }) {
   for (const name of companions) recipes[`A film of the ${name}`] = commands.film(subject, name === "planner" ? "onrails" : { network });
   recipes["Draw this world"] = commands.sample(subject);
   // Keys are ignored while a button has focus, so give the focus back to the view.
-  const toView = (action: () => void) => {
+  const thenFocusView = (action: () => void) => {
     action();
     document.querySelector<HTMLElement>(".seat .frame[tabindex]")?.focus({ preventScroll: true });
   };
@@ -153,7 +153,7 @@ export function Play({ route }: { route: Route }) {
         <div>
           <h1>{task === "draft" ? draft.name : task}</h1>
           <p>{about.value?.description} {description}</p>
-          {you && <p class="small">{payOf(you.episode.world, you.episode.actionSpace.step_seconds)}</p>}
+          {you && <p class="small">{describeRewards(you.episode.world, you.episode.actionSpace.step_seconds)}</p>}
         </div>
       </div>
       <div class="tools stack">
@@ -180,11 +180,11 @@ export function Play({ route }: { route: Route }) {
             {SPEEDS.map((factor) => (
               <button
                 key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times real time`}
-                onClick={() => toView(() => setSpeed(factor))}
+                onClick={() => thenFocusView(() => setSpeed(factor))}
               >{factor}×</button>
             ))}
           </div>
-          <button type="button" title="Start the clock (so does any movement key)" onClick={() => toView(() => setState(state === "running" ? "paused" : "running"))}>
+          <button type="button" title="Start the clock (so does any movement key)" onClick={() => thenFocusView(() => setState(state === "running" ? "paused" : "running"))}>
             {state === "running" ? "Pause" : "Go"}
           </button>
           <button type="button" onClick={again}>Again</button>
@@ -210,7 +210,7 @@ export function Play({ route }: { route: Route }) {
             <h2>Episode</h2>
             <p class="small key-list">
               <kbd>↑</kbd> <kbd>↓</kbd> <kbd>←</kbd> <kbd>→</kbd> or <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> walk and turn,{" "}
-              <kbd>space</kbd> uses what is ahead, <kbd>P</kbd> pauses, <kbd>R</kbd> begins again, <kbd>N</kbd> goes to the next world.
+              <kbd>space</kbd> uses what is ahead, <kbd>P</kbd> pauses, <kbd>R</kbd> starts over, <kbd>N</kbd> goes to the next world.
             </p>
             </div>
             {you && you.log.length > 0
@@ -232,7 +232,7 @@ export function Play({ route }: { route: Route }) {
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(save)}>Save</button>
               <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task, { variant })}>Edit the task</a>
             </div>
-            <p class="small faint" role="status">{shared || (you?.step.step === 0 && "Take at least one step to enable Replay and Save.")}</p>
+            <p class="small faint" role="status">{shareStatus || (you?.step.step === 0 && "Take at least one step to enable Replay and Save.")}</p>
             {link && <input type="text" readOnly value={link} aria-label="The link" onFocus={(event) => event.currentTarget.select()} />}
             <Recipes of={recipes} />
             </div>

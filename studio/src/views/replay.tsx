@@ -1,4 +1,4 @@
-// The replay view: an episode on a timeline, from a link or from a dropped log, with the learning curve of the log.
+// The replay view: shows an episode from a link or from a dropped log on a timeline, and the learning curve of the log.
 
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
@@ -10,27 +10,27 @@ import { amount } from "../pay.ts";
 import { hrefOf, type Route } from "../route.ts";
 import { VIEW } from "../session.ts";
 import { asError, engine } from "../simulator.ts";
-import { following, type Loop, looped, marks } from "../timeline.ts";
+import { nextMoment, type Loop, moveLoopEnd, marks } from "../timeline.ts";
 import { Curves } from "../parts/curves.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
 import { Timeline } from "../parts/timeline.tsx";
 
 /** A replayed episode with all its steps. */
-interface Played {
+interface Replayed {
   episode: Episode;
   title: string;
   /** The state before the first step, and the state after each step. */
   steps: Step[];
 }
 
-async function played(episode: Episode, title: string): Promise<Played> {
+async function replayed(episode: Episode, title: string): Promise<Replayed> {
   const actions = await episode.actions();
   const first = await episode.seek(0);
   return { episode, title, steps: [first, ...(await episode.steps(actions))] };
 }
 
-async function fromLink(fragment: string): Promise<Played> {
+async function fromLink(fragment: string): Promise<Replayed> {
   const { request, looks, actions } = await engine.decodeLink(fragment);
   const episode = await engine.open(request, { ...VIEW, ...(looks ? { looks } : {}) });
   const first = await episode.now();
@@ -41,11 +41,11 @@ async function fromLink(fragment: string): Promise<Played> {
   return { episode, title: `${name}${where}`, steps: [first, ...(await episode.steps(actions))] };
 }
 
-/** The options of an address that name a world. */
-const placeOf = ({ variant, seed, index }: commands.Subject) => ({ variant, seed: seed || undefined, index: index || undefined });
+/** The options of an address that select a world. */
+const worldOptions = ({ variant, seed, index }: commands.Subject) => ({ variant, seed: seed || undefined, index: index || undefined });
 
 export function Replay({ route }: { route: Route }) {
-  const [shown, setShown] = useState<Played | null>(null);
+  const [shown, setShown] = useState<Replayed | null>(null);
   const [error, setError] = useState<EngineError | null>(null);
   const [log, setLog] = useState<Log | null>(null);
   const [folder, setFolder] = useState("");
@@ -56,10 +56,10 @@ export function Replay({ route }: { route: Route }) {
   const [loop, setLoop] = useState<Loop | null>(null);
   const [isOver, setOver] = useState(false);
   const [isReading, setReading] = useState(false);
-  /** The moment requested last; the state catches up with it. */
+  /** The moment requested last; drawing catches up with it. */
   const wanted = useRef(0);
 
-  const show = async (opening: Promise<Played>) => {
+  const show = async (opening: Promise<Replayed>) => {
     setError(null);
     setReading(true);
     try {
@@ -87,10 +87,10 @@ export function Replay({ route }: { route: Route }) {
     setError(null);
     setReading(true);
     try {
-      const found = await files;
-      const next = await engine.log(found);
+      const dropped = await files;
+      const next = await engine.log(dropped);
       setLog(next);
-      setFolder(found[0]?.path.split("/")[0] ?? "log");
+      setFolder(dropped[0]?.path.split("/")[0] ?? "log");
       setShown(null);
       const first = next.episodes.find(({ recorded }) => recorded);
       if (first) open(first.experience);
@@ -102,7 +102,7 @@ export function Replay({ route }: { route: Route }) {
   };
   const open = (number: number) => {
     setExperience(number);
-    void show(engine.openLogged(number, VIEW).then((episode) => played(episode, `Episode ${number}`)));
+    void show(engine.openLogged(number, VIEW).then((episode) => replayed(episode, `Episode ${number}`)));
   };
 
   // Only one picture is drawn at a time, always for the latest requested moment.
@@ -137,7 +137,7 @@ export function Replay({ route }: { route: Route }) {
     setMoment(wanted.current);
   };
   useClock(isPlaying && shown !== null, 1 / (shown?.episode.actionSpace.step_seconds ?? 0.1), async () => {
-    const next = following(wanted.current, last, loop);
+    const next = nextMoment(wanted.current, last, loop);
     if (next === null) setPlaying(false);
     else seek(next);
   }, () => setPlaying(false));
@@ -154,8 +154,8 @@ export function Replay({ route }: { route: Route }) {
       else if (event.code === "Home") seek(0);
       else if (event.code === "End") seek(last);
       else if (event.code === "Space" && !isButton) play();
-      else if (event.code === "KeyI") setLoop(looped(loop, "from", wanted.current, last));
-      else if (event.code === "KeyO") setLoop(looped(loop, "to", wanted.current, last));
+      else if (event.code === "KeyI") setLoop(moveLoopEnd(loop, "from", wanted.current, last));
+      else if (event.code === "KeyO") setLoop(moveLoopEnd(loop, "to", wanted.current, last));
       else if (event.code === "KeyL") setLoop(null);
       else return;
       event.preventDefault();
@@ -170,7 +170,7 @@ export function Replay({ route }: { route: Route }) {
   };
   const step = shown?.steps[moment];
   const trail = useMemo(() => shown?.steps.slice(0, moment + 1).map(({ agent }): [number, number] => [agent.x, agent.y]) ?? [], [shown, moment]);
-  const found = useMemo(() => (shown ? marks(shown.steps.slice(1)) : []), [shown]);
+  const moments = useMemo(() => (shown ? marks(shown.steps.slice(1)) : []), [shown]);
   const request = shown?.episode.request;
   const isOwn = request !== undefined && "task" in request && request.task.startsWith("{");
   const subject = request && "task" in request
@@ -178,7 +178,7 @@ export function Replay({ route }: { route: Route }) {
     : null;
   const go = (view: "play" | "author") => {
     if (isOwn) draft.take(request.task);
-    location.hash = hrefOf(view, subject!.task, placeOf(subject!));
+    location.hash = hrefOf(view, subject!.task, worldOptions(subject!));
   };
   const actions = shown?.steps.slice(1).flatMap(({ action }) => (action === null ? [] : [action])) ?? [];
   const recipe = log && experience !== null
@@ -210,7 +210,7 @@ export function Replay({ route }: { route: Route }) {
       {!shown && !log && !isReading && (
         <div class={`empty ${isOver ? "over" : ""}`}>
           <h2>Drop a log folder here</h2>
-          <p>Any folder that <code>driftworld run --record</code> or a learner in Python wrote. Nothing is uploaded: the page reads it itself.</p>
+          <p>Any folder that <code>driftworld run --record</code> or a learner in Python wrote. Nothing is uploaded: the page itself reads the files.</p>
           <p>Or play a world and choose <b>Replay</b>, or open a link that someone shared.</p>
         </div>
       )}
@@ -227,10 +227,10 @@ export function Replay({ route }: { route: Route }) {
             <section class="card pad" aria-label="Map"><FlatMap map={picture?.map ?? null} trail={trail} /></section>
             <section class="card pad stack" aria-label="Moments">
               <h2>Moments</h2>
-              {found.length
+              {moments.length
                 ? (
                   <ul class="events picks">
-                    {found.map((mark) => (
+                    {moments.map((mark) => (
                       <li key={mark.step}>
                         <button type="button" {...(mark.step === moment ? { "aria-current": "step" as const } : {})} onClick={() => seek(mark.step)}>
                           <span>step {mark.step}{mark.text && `: ${mark.text}`}</span><span class="number">{amount(mark.reward)}</span>
@@ -239,7 +239,7 @@ export function Replay({ route }: { route: Route }) {
                     ))}
                   </ul>
                 )
-                : <p class="faint small">Nothing was met, and every step paid the same.</p>}
+                : <p class="faint small">Nothing was encountered, and every step gave the same reward.</p>}
             </section>
           </div>
           <section class="card pad stack" aria-label="Timeline">
@@ -247,8 +247,8 @@ export function Replay({ route }: { route: Route }) {
             <div class="row spread">
               <div class="row">
                 <button type="button" class="main" onClick={play}>{isPlaying ? "Pause" : "Play"}</button>
-                <button type="button" onClick={() => setLoop(looped(loop, "from", moment, last))}>Loop in</button>
-                <button type="button" onClick={() => setLoop(looped(loop, "to", moment, last))}>Loop out</button>
+                <button type="button" onClick={() => setLoop(moveLoopEnd(loop, "from", moment, last))}>Loop in</button>
+                <button type="button" onClick={() => setLoop(moveLoopEnd(loop, "to", moment, last))}>Loop out</button>
                 <button type="button" disabled={!loop} onClick={() => setLoop(null)}>No loop</button>
               </div>
               <p class="small faint key-list">
