@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::request::WorldRequest;
 
-/// A call with its arguments. Files and new networks are passed as bytes; later calls refer to networks by number.
+/// A call with its arguments. Files and new networks are passed as bytes; later calls refer to a network by its number.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "call", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Call {
@@ -34,7 +34,7 @@ pub(crate) enum Call {
     },
     Step {
         episode: u32,
-        steps: Vec<Command>,
+        steps: Vec<StepInput>,
     },
     Choose {
         episode: u32,
@@ -97,10 +97,10 @@ pub(crate) enum Call {
         worlds: u64,
         seed: u64,
     },
-    Matrix(Among),
+    Matrix(Selection),
     Order {
         #[serde(flatten)]
-        among: Among,
+        selection: Selection,
         #[serde(default)]
         method: Option<String>,
         #[serde(default)]
@@ -128,7 +128,7 @@ pub(crate) enum Call {
 
 /// Some or all variants of a task, and the measure that compares them.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Among {
+pub(crate) struct Selection {
     pub(crate) task: String,
     #[serde(default)]
     pub(crate) variants: Option<Vec<String>>,
@@ -151,14 +151,14 @@ pub(crate) struct Link {
     pub(crate) request: WorldRequest,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) looks: Option<Style>,
-    pub(crate) actions: Vec<Taken>,
+    pub(crate) actions: Vec<ActionJson>,
 }
 
 /// The input of a step.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
-pub(crate) enum Command {
-    Action(Taken),
+pub(crate) enum StepInput {
+    Action(ActionJson),
     /// Input from keys, with `ahead` and `turn` in −1..=1.
     Keys {
         ahead: f64,
@@ -170,12 +170,12 @@ pub(crate) enum Command {
 /// An action in its JSON form.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Taken {
+pub(crate) enum ActionJson {
     Row(usize),
     Numbers([f64; 3]),
 }
 
-impl From<Action> for Taken {
+impl From<Action> for ActionJson {
     fn from(action: Action) -> Self {
         match action {
             Action::Discrete(row) => Self::Row(row),
@@ -184,16 +184,16 @@ impl From<Action> for Taken {
     }
 }
 
-impl From<Taken> for Action {
-    fn from(taken: Taken) -> Self {
-        match taken {
-            Taken::Row(row) => Self::Discrete(row),
-            Taken::Numbers(numbers) => Self::Continuous(numbers),
+impl From<ActionJson> for Action {
+    fn from(json: ActionJson) -> Self {
+        match json {
+            ActionJson::Row(row) => Self::Discrete(row),
+            ActionJson::Numbers(numbers) => Self::Continuous(numbers),
         }
     }
 }
 
-/// The agent that acts; a network is identified by the number that it got when it was handed over.
+/// The agent that acts. A network is identified by the number that [`Call::Network`] returned.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum AgentName {

@@ -1,4 +1,4 @@
-//! Distances, elements and orders, formatted for the page.
+//! Computes distances, elements and orders, and formats them for the page.
 
 use driftworld::distances::{self, Sample, Side};
 use driftworld::elements::{ElementsRequest, elements_of};
@@ -6,7 +6,7 @@ use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, classical_map
 use driftworld::spec::{By, Element, Variant};
 use serde_json::{Value, json};
 
-use crate::call::Among;
+use crate::call::Selection;
 use crate::fault::Fault;
 use crate::request::TaskCache;
 
@@ -33,26 +33,26 @@ pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, 
 fn unit(by: By) -> &'static str {
     match by {
         By::Parameters => {
-            "1 is one parameter moved over its whole range. What counts for several elements counts once."
+            "1 is one parameter moved over its whole range. A parameter that counts for several elements is added once."
         }
-        By::Worlds => "Each part has a unit of its own, such as 10 m, half a turn, 100 points or black for white.",
-        By::Pictures => "1 is black for white, on objects or around them; 2 is the most.",
+        By::Worlds => "Each part has its own unit, such as 10 m, half a turn, 100 points or black for white.",
+        By::Pictures => "1 is black for white, on objects or around them; the maximum is 2.",
         By::PicturesWhole => "1 is black for white everywhere.",
-        By::PicturesStructure => "0 is the same edges and textures, 1 the opposite ones.",
+        By::PicturesStructure => "0 means the same edges and textures, 1 the opposite ones.",
         By::Occupancy => "In metres: how far objects would have to move on average, summed over their classes.",
-        By::OccupancyJaccard => "1 is no place in common.",
-        By::OccupancyHausdorff => "In metres: how far the farthest taken place is from any of the other.",
-        By::OccupancyChamfer => "In metres: how far taken places are from the nearest of the other, on average.",
+        By::OccupancyJaccard => "1 means that no place is occupied in both.",
+        By::OccupancyHausdorff => "In metres: how far the farthest occupied place is from the nearest of the other.",
+        By::OccupancyChamfer => "In metres: the mean distance from occupied places to the nearest one of the other.",
         By::Placements => "1 is 10 m on average, or a class of objects that one of the two lacks; classes are summed.",
-        By::Objects => "In metres: the mean way between objects; one without a counterpart counts 10 m.",
-        By::ObjectsCounts => "1 is no object with a counterpart.",
+        By::Objects => "In metres: the mean distance between matched objects; an unmatched one counts 10 m.",
+        By::ObjectsCounts => "1 means that no object has a counterpart.",
         By::Colors | By::ColorsSrgb | By::ColorsCie76 | By::ColorsCiede2000 | By::ColorsHyab => {
-            "1 is as far apart as two colours can be, for every object."
+            "1 means that every object's colours are as far apart as two colours can be."
         }
-        By::Rewards => "0 asks for the same, about 0.7 for something unrelated, 1 for the reverse.",
+        By::Rewards => "0 means the same goal, about 0.7 an unrelated one, 1 the opposite one.",
         By::Dynamics => "1 is 100 points, 10 m or half a turn of difference after the same action, on average.",
         By::DynamicsBisimulation => "1 is 100 points of difference for each action, where both do the same.",
-        By::Behavior => "1 is 100 points an episode that the other's planner earns less than the own one.",
+        By::Behavior => "1 is 100 points that the other's planner earns less per episode than the world's own planner.",
         By::BehaviorSuccess => {
             "1 is a planner that always succeeds in its own worlds, and never in those of the other."
         }
@@ -62,12 +62,12 @@ fn unit(by: By) -> &'static str {
 /// The elements in which two variants of a task differ, with a witness of each.
 pub(crate) fn elements(
     tasks: &mut TaskCache,
-    called: &str,
+    name_or_text: &str,
     [a, b]: [&str; 2],
     worlds: u64,
     seed: u64,
 ) -> Result<Value, Fault> {
-    let task = tasks.task(called)?;
+    let task = tasks.task(name_or_text)?;
     let request = ElementsRequest {
         worlds,
         seed,
@@ -90,42 +90,42 @@ pub(crate) fn elements(
 }
 
 /// All distances among variants, and the measure.
-fn measured(tasks: &mut TaskCache, among: &Among) -> Result<(DistanceMatrix, By), Fault> {
-    let task = tasks.task(&among.task)?;
-    let variants: Vec<Variant> = match &among.variants {
+fn measure_distances(tasks: &mut TaskCache, selection: &Selection) -> Result<(DistanceMatrix, By), Fault> {
+    let task = tasks.task(&selection.task)?;
+    let variants: Vec<Variant> = match &selection.variants {
         None => task.all_variants(),
         Some(names) => names.iter().map(|name| task.variant(name)).collect::<Result<_, _>>()?,
     };
-    let by = among.by.unwrap_or_else(|| distances::fitting(&variants));
+    let by = selection.by.unwrap_or_else(|| distances::fitting(&variants));
     let named: Vec<(String, Variant)> = (variants.into_iter())
         .map(|variant| (variant.name().to_owned(), variant))
         .collect();
     let sample = Sample {
-        worlds: among.worlds,
+        worlds: selection.worlds,
         ..Sample::by(by)
     };
     Ok((distances::variant_matrix(&named, &sample, Ok)?, by))
 }
 
 /// All distances among variants, and a two-dimensional map of them.
-pub(crate) fn matrix(tasks: &mut TaskCache, among: &Among) -> Result<Value, Fault> {
-    let (matrix, by) = measured(tasks, among)?;
+pub(crate) fn matrix(tasks: &mut TaskCache, selection: &Selection) -> Result<Value, Fault> {
+    let (matrix, by) = measure_distances(tasks, selection)?;
     let map = classical_map(&matrix);
     let rows: Vec<Vec<f64>> = matrix.values().rows().into_iter().map(|row| row.to_vec()).collect();
     Ok(json!({ "by": by, "labels": matrix.labels(), "rows": rows, "points": map.points, "shown": map.explained }))
 }
 
 /// Orders variants.
-pub(crate) fn ordered(
+pub(crate) fn order_variants(
     tasks: &mut TaskCache,
-    among: &Among,
+    selection: &Selection,
     method: Option<Method>,
     start: Option<&str>,
     seed: u64,
 ) -> Result<Value, Fault> {
-    let (matrix, by) = measured(tasks, among)?;
+    let (matrix, by) = measure_distances(tasks, selection)?;
     let method = method.unwrap_or_else(|| Method::default_for(matrix.len()));
-    let place = |start: &str| {
+    let index_of = |start: &str| {
         let found = matrix.labels().iter().position(|label| label == start);
         found.ok_or_else(|| {
             Fault::request(format!(
@@ -135,7 +135,7 @@ pub(crate) fn ordered(
         })
     };
     let options = OrderOptions {
-        first: start.map(place).transpose()?,
+        first: start.map(index_of).transpose()?,
         seed,
         ..OrderOptions::default()
     };

@@ -8,16 +8,16 @@ use driftworld::modality;
 use driftworld::spec::{ActionModel, ActionSpace, Modality, World};
 use serde_json::{Value, json};
 
-use crate::call::{AgentName, Command, Taken, View};
+use crate::call::{ActionJson, AgentName, StepInput, View};
 use crate::fault::Fault;
 
-/// Number of steps between kept snapshots.
-const KEPT: usize = 64;
+/// Number of steps between snapshots.
+const SNAPSHOT_INTERVAL: usize = 64;
 
-/// Number of corners of the polygon that shows a disc on the map.
-const CORNERS: usize = 32;
+/// Number of corners of the polygon that stands for a disc on the map.
+const DISC_CORNERS: usize = 32;
 
-/// The networks that were handed over, by their numbers.
+/// The networks that the page passed, by number.
 pub(crate) type Networks = Vec<NetworkAgent>;
 
 /// A new agent; its seed is 0, the default of the command's `--agent-seed`.
@@ -40,14 +40,14 @@ pub(crate) fn agent(name: AgentName, networks: &Networks) -> Result<Box<dyn Agen
 pub(crate) struct Episode {
     environment: Environment,
     actions: Vec<Action>,
-    /// Number of actions taken up to the current step.
-    at: usize,
-    /// Snapshots, one every [`KEPT`] steps, each with the result of its last step.
-    moments: Vec<(Snapshot, Step)>,
+    /// Number of steps taken: the current position in `actions`.
+    position: usize,
+    /// Snapshots, one every [`SNAPSHOT_INTERVAL`] steps, each with the result of the step before it.
+    snapshots: Vec<(Snapshot, Step)>,
     step: Step,
-    /// The agent that chose the last action; an agent starts anew when it takes over.
+    /// The agent that chose the last action, with its state. An agent that takes over starts afresh.
     agent: Option<(AgentName, Box<dyn Agent>)>,
-    /// The action that it chose last.
+    /// The action that this agent chose last.
     chosen: Option<Action>,
     size: Option<[u32; 2]>,
 }
@@ -57,15 +57,15 @@ impl Episode {
         Self::with_actions(world, Vec::new(), size)
     }
 
-    /// An episode at its start whose actions are known.
+    /// An episode at its start, with actions to replay.
     pub(crate) fn with_actions(world: World, actions: Vec<Action>, size: Option<[u32; 2]>) -> Self {
         let environment = Environment::new(world);
         let start = (environment.snapshot(), Step::default());
         Self {
             environment,
             actions,
-            at: 0,
-            moments: vec![start],
+            position: 0,
+            snapshots: vec![start],
             step: Step::default(),
             agent: None,
             chosen: None,
@@ -73,19 +73,19 @@ impl Episode {
         }
     }
 
-    pub(crate) fn actions(&self) -> Vec<Taken> {
-        self.actions.iter().copied().map(Taken::from).collect()
+    pub(crate) fn actions(&self) -> Vec<ActionJson> {
+        self.actions.iter().copied().map(ActionJson::from).collect()
     }
 
     pub(crate) fn ended(&self) -> bool {
         self.environment.ended()
     }
 
-    /// Takes a step, and drops the actions recorded beyond the current one.
-    pub(crate) fn step(&mut self, command: Command) -> Result<(), Fault> {
+    /// Takes a step from the current position, and drops the actions after it.
+    pub(crate) fn step(&mut self, command: StepInput) -> Result<(), Fault> {
         let action = match command {
-            Command::Action(action) => action.into(),
-            Command::Keys { ahead, turn, interact } => {
+            StepInput::Action(action) => action.into(),
+            StepInput::Keys { ahead, turn, interact } => {
                 let agent = &self.environment.world().agent_params;
                 let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
                 self.environment.action_near(ahead * speed, turn * rate, interact)
@@ -105,30 +105,30 @@ impl Episode {
             ));
         }
         self.environment.check(action)?;
-        self.actions.truncate(self.at);
-        self.moments.truncate(self.at / KEPT + 1);
+        self.actions.truncate(self.position);
+        self.snapshots.truncate(self.position / SNAPSHOT_INTERVAL + 1);
         self.actions.push(action);
-        self.go_on()
+        self.replay_next()
     }
 
-    /// Takes the next of the known actions.
-    fn go_on(&mut self) -> Result<(), Fault> {
-        self.step = self.environment.step(self.actions[self.at])?;
-        self.at += 1;
-        if self.at == KEPT * self.moments.len() {
-            self.moments.push((self.environment.snapshot(), self.step.clone()));
+    /// Takes the next action of `actions`.
+    fn replay_next(&mut self) -> Result<(), Fault> {
+        self.step = self.environment.step(self.actions[self.position])?;
+        self.position += 1;
+        if self.position == SNAPSHOT_INTERVAL * self.snapshots.len() {
+            self.snapshots.push((self.environment.snapshot(), self.step.clone()));
         }
         Ok(())
     }
 
     /// The action that an agent would take now.
     pub(crate) fn choose(&mut self, name: AgentName, networks: &Networks) -> Result<Action, Fault> {
-        let mut acting = match self.agent.take() {
+        let mut current = match self.agent.take() {
             Some((known, agent)) if known == name => agent,
             _ => agent(name, networks)?,
         };
-        let action = acting.act(&self.environment);
-        self.agent = Some((name, acting));
+        let action = current.act(&self.environment);
+        self.agent = Some((name, current));
         self.chosen = Some(action);
         Ok(action)
     }
@@ -142,14 +142,14 @@ impl Episode {
     pub(crate) fn seek(&mut self, step: usize) -> Result<(), Fault> {
         let step = step.min(self.actions.len());
         self.agent = None;
-        let nearest = (step / KEPT).min(self.moments.len() - 1);
-        if step < self.at || nearest * KEPT > self.at {
-            let (moment, last) = &self.moments[nearest];
-            self.environment.restore(moment);
-            (self.step, self.at) = (last.clone(), nearest * KEPT);
+        let nearest = (step / SNAPSHOT_INTERVAL).min(self.snapshots.len() - 1);
+        if step < self.position || nearest * SNAPSHOT_INTERVAL > self.position {
+            let (snapshot, last) = &self.snapshots[nearest];
+            self.environment.restore(snapshot);
+            (self.step, self.position) = (last.clone(), nearest * SNAPSHOT_INTERVAL);
         }
-        while self.at < step {
-            self.go_on()?;
+        while self.position < step {
+            self.replay_next()?;
         }
         Ok(())
     }
@@ -158,16 +158,16 @@ impl Episode {
     pub(crate) fn now(&self) -> Value {
         let agent = self.environment.agent();
         let mut now = json!(self.step);
-        let more = json!({
-            "step": self.at,
-            "action": self.at.checked_sub(1).map(|last| Taken::from(self.actions[last])),
+        let state = json!({
+            "step": self.position,
+            "action": self.position.checked_sub(1).map(|last| ActionJson::from(self.actions[last])),
             "total": self.environment.episode_return(),
             "seconds": self.environment.seconds(),
             "energy": self.environment.energy(),
             "agent": { "x": agent.position[0], "y": agent.position[1], "heading": agent.heading_deg },
         });
-        if let (Value::Object(now), Value::Object(more)) = (&mut now, more) {
-            now.extend(more);
+        if let (Value::Object(now), Value::Object(state)) = (&mut now, state) {
+            now.extend(state);
         }
         now
     }
@@ -179,15 +179,15 @@ impl Episode {
             recorded_by: env!("CARGO_PKG_VERSION").to_owned(),
             world: self.environment.world().clone(),
             edits: Vec::new(),
-            actions: self.actions[..self.at].to_vec(),
+            actions: self.actions[..self.position].to_vec(),
             reward: self.environment.episode_return(),
             ended_by: self.step.ended_by,
         };
         RecordingLines::header() + &RecordingLines::default().lines(&recording)
     }
 
-    /// The description that the page gets when the episode is opened.
-    pub(crate) fn opened(&self) -> Value {
+    /// The description that the page gets when it opens the episode.
+    pub(crate) fn description(&self) -> Value {
         let world = self.environment.world();
         let agent = &world.agent_params;
         let table: Option<Vec<[f64; 3]>> = agent
@@ -228,8 +228,8 @@ impl Episode {
                 return Err(driftworld::env::EnvError::PictureSize { width, height }.into());
             }
             let agent = self.environment.agent();
-            let place = Some((agent.position, agent.heading_deg));
-            let image = top_down(self.environment.scene(), width, height, place);
+            let pose = Some((agent.position, agent.heading_deg));
+            let image = top_down(self.environment.scene(), width, height, pose);
             return Ok(([width, height], rgba(&image.rgb)));
         }
         let rgb = |frame: &Frame| rgba(&modality::to_rgb(modality, frame, modality::number_color));
@@ -266,8 +266,8 @@ impl Episode {
         });
         let zones = world.environment_params.zones.iter().map(|zone| {
             let points = match (&zone.disc, &zone.polygon) {
-                (Some(disc), _) => (0..CORNERS)
-                    .map(|corner| around(disc.center, disc.radius, corner))
+                (Some(disc), _) => (0..DISC_CORNERS)
+                    .map(|corner| disc_corner(disc.center, disc.radius, corner))
                     .collect(),
                 (None, corners) => corners.clone().unwrap_or_default(),
             };
@@ -288,14 +288,14 @@ impl Episode {
     /// The outcome of an episode that an agent has played.
     pub(crate) fn outcome(&self) -> Value {
         json!({
-            "steps": self.at, "total": self.environment.episode_return(), "success": self.step.success,
+            "steps": self.position, "total": self.environment.episode_return(), "success": self.step.success,
             "ended_by": self.step.ended_by, "actions": self.actions(),
         })
     }
 }
 
-fn around([x, y]: [f64; 2], radius: f64, corner: usize) -> [f64; 2] {
-    let turn = corner as f64 / CORNERS as f64 * std::f64::consts::TAU;
+fn disc_corner([x, y]: [f64; 2], radius: f64, corner: usize) -> [f64; 2] {
+    let turn = corner as f64 / DISC_CORNERS as f64 * std::f64::consts::TAU;
     [x + radius * libm::cos(turn), y + radius * libm::sin(turn)]
 }
 

@@ -36,9 +36,9 @@ impl Fault {
     }
 }
 
-/// The problems of an error as the page shows them; a syntax error is placed where parsing stopped.
+/// The problems of an error, as the page shows them. A syntax error is located where parsing stopped.
 pub(crate) fn problems_of(error: &SpecError) -> Vec<Value> {
-    let place = |problem: &Problem| {
+    let to_json = |problem: &Problem| {
         json!({
             "code": problem.code, "pointer": problem.pointer, "line": problem.line, "column": problem.column,
             "found": problem.found, "expected": problem.expected, "advice": problem.advice, "message": problem.to_string(),
@@ -60,7 +60,7 @@ pub(crate) fn problems_of(error: &SpecError) -> Vec<Value> {
             "message": message,
         })];
     }
-    error.problems().iter().map(place).collect()
+    error.problems().iter().map(to_json).collect()
 }
 
 impl From<SpecError> for Fault {

@@ -1,5 +1,5 @@
-//! Driftworld for a browser: a [`Session`] answers calls in JSON with optional bytes. The simulator, distances and orders
-//! come from other crates; `abi.rs` has the C functions that WebAssembly exports.
+//! Driftworld for a browser: a [`Session`] answers calls in JSON with optional bytes. `abi.rs` has the C functions that
+//! WebAssembly exports.
 
 #[cfg(target_family = "wasm")]
 mod abi;

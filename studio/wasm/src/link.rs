@@ -1,5 +1,5 @@
-//! Encodes an episode as the fragment of an address: base64url of the format's version, a checksum, and deflated data:
-//! a line of JSON with the world and the outcome, then a number for each step.
+//! Encodes an episode as the fragment of an address. The fragment is the base64url of the format's version, a checksum,
+//! and deflated data: a line of JSON with the world and the outcome, then a number for each step.
 //!
 //! Actions of three numbers would take 24 bytes a step. But the planner and the random agent repeat their actions
 //! exactly, so a step takes a few bits: the number of the agent that chose it, or an index into a list of actions.
@@ -15,7 +15,7 @@ use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use serde::{Deserialize, Serialize};
 
-use crate::call::{AgentName, Link, Taken};
+use crate::call::{ActionJson, AgentName, Link};
 use crate::episode::agent;
 use crate::fault::Fault;
 use crate::request::{TaskCache, WorldRequest, in_style};
@@ -30,12 +30,12 @@ pub(crate) const MAX_LINK_STEPS: usize = 20_000;
 const MAX_FRAGMENT: usize = 1 << 18;
 const MAX_UNPACKED: u64 = 1 << 22;
 
-/// The agents that repeat their actions exactly. Each has two numbers: one for continuing, and one for starting anew.
+/// The agents that repeat their actions exactly. Each has two step numbers: one for continuing, and one for starting afresh.
 const AGENTS: [AgentName; 2] = [AgentName::Planner, AgentName::Random];
-/// Step numbers below this are those of agents; larger ones are indices into the list of actions, plus this.
+/// Step numbers below this belong to agents; subtracting it from any other gives an index into the list of actions.
 const LISTED: u64 = 2 * AGENTS.len() as u64;
 
-/// The contents of the line of JSON.
+/// The line of JSON.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Header {
@@ -45,31 +45,31 @@ struct Header {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     looks: Option<Style>,
     steps: usize,
-    /// The beginning of the world's hash.
+    /// The first characters of the world's hash.
     hash: String,
     /// The bits of the return, in hexadecimal.
     total: String,
     /// The actions that steps refer to by index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    listed: Vec<Taken>,
+    listed: Vec<ActionJson>,
 }
 
-/// The agents that are queried during an episode for the actions they would take.
+/// The agents that can continue at the current step, by index into [`AGENTS`].
 #[derive(Default)]
-struct Asked([Option<Box<dyn Agent>>; AGENTS.len()]);
+struct AgentStates([Option<Box<dyn Agent>>; AGENTS.len()]);
 
-impl Asked {
-    /// The action of an agent that continues (even numbers) or starts anew (odd). Then only this agent can continue.
+impl AgentStates {
+    /// The action of an agent that continues (even numbers) or starts afresh (odd). Afterwards, only this agent can continue.
     fn act(&mut self, number: usize, environment: &Environment) -> Option<Action> {
-        let (own, is_new) = (number / 2, number % 2 == 1);
+        let (index, is_new) = (number / 2, number % 2 == 1);
         let mut acting = if is_new {
-            Some(agent(AGENTS[own], &Vec::new()).ok()?)
+            Some(agent(AGENTS[index], &Vec::new()).ok()?)
         } else {
-            self.0[own].take()
+            self.0[index].take()
         }?;
         let action = acting.act(environment);
         *self = Self::default();
-        self.0[own] = Some(acting);
+        self.0[index] = Some(acting);
         Some(action)
     }
 }
@@ -83,7 +83,7 @@ fn same(a: Action, b: Action) -> bool {
 }
 
 /// Encodes an episode as a fragment.
-pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault> {
+pub(crate) fn encode(tasks: &mut TaskCache, link: Link) -> Result<String, Fault> {
     let steps = link.actions.len();
     if steps > MAX_LINK_STEPS {
         return Err(Fault::new(
@@ -94,16 +94,16 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
     let world = tasks.world(&link.request)?;
     let hash = short_hash(&world.hash());
     let mut environment = Environment::new(in_style(world, link.looks)?);
-    let (mut asked, mut listed, mut numbers) = (Asked::default(), Vec::<Action>::new(), Vec::new());
+    let (mut agents, mut listed, mut numbers) = (AgentStates::default(), Vec::<Action>::new(), Vec::new());
     for taken in &link.actions {
         let action = Action::from(*taken);
-        // An index for a discrete action is as short as an agent's number, and faster to decode.
+        // For a discrete action, an index is as short as an agent's number, and faster to decode.
         let number = match action {
             Action::Discrete(_) => None,
-            Action::Continuous(_) => chosen_again(&mut asked, &environment, action),
+            Action::Continuous(_) => agent_number(&mut agents, &environment, action),
         };
         numbers.push(number.unwrap_or_else(|| {
-            asked = Asked::default();
+            agents = AgentStates::default();
             let known = listed.iter().position(|known| same(*known, action));
             LISTED
                 + known.unwrap_or_else(|| {
@@ -120,15 +120,15 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
         steps,
         hash,
         total: bits(environment.episode_return()),
-        listed: listed.into_iter().map(Taken::from).collect(),
+        listed: listed.into_iter().map(ActionJson::from).collect(),
     };
-    let mut unpacked = serde_json::to_vec(&header).expect("keys are strings, and numbers were checked by steps");
-    unpacked.push(b'\n');
+    let mut data = serde_json::to_vec(&header).expect("keys are strings, and numbers were checked by steps");
+    data.push(b'\n');
     for number in numbers {
-        push_number(&mut unpacked, number);
+        push_number(&mut data, number);
     }
     let mut deflater = DeflateEncoder::new(Vec::new(), Compression::best());
-    let packed = deflater.write_all(&unpacked).and_then(|()| deflater.finish());
+    let packed = deflater.write_all(&data).and_then(|()| deflater.finish());
     let packed = packed.expect("writing into memory cannot fail");
     let mut bytes = vec![FORMAT];
     bytes.extend(crc32fast::hash(&packed).to_le_bytes());
@@ -136,18 +136,18 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
     Ok(URL_SAFE_NO_PAD.encode(bytes))
 }
 
-/// The number of an agent that would also have chosen this action.
-fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) -> Option<u64> {
-    for own in 0..AGENTS.len() {
-        // An agent that acted until now continues; if its action differs, it may have started anew.
-        let first = 2 * own + usize::from(asked.0[own].is_none());
-        for number in first..2 * own + 2 {
-            let mut trying = Asked::default();
+/// The step number of an agent that would also have chosen this action.
+fn agent_number(agents: &mut AgentStates, environment: &Environment, action: Action) -> Option<u64> {
+    for index in 0..AGENTS.len() {
+        // Try an agent that acted until now as continuing, then as starting afresh.
+        let first = 2 * index + usize::from(agents.0[index].is_none());
+        for number in first..2 * index + 2 {
+            let mut trial = AgentStates::default();
             if number % 2 == 0 {
-                trying.0[own] = asked.0[own].take();
+                trial.0[index] = agents.0[index].take();
             }
-            if trying.act(number, environment).is_some_and(|would| same(would, action)) {
-                *asked = trying;
+            if trial.act(number, environment).is_some_and(|next| same(next, action)) {
+                *agents = trial;
                 return Some(number as u64);
             }
         }
@@ -155,10 +155,10 @@ fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) ->
     None
 }
 
-/// Decodes an episode from a fragment, and replays it to check that it is the same.
-pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fault> {
-    let (header, mut numbers) = unpacked(fragment)?;
-    let other = |what: &str| {
+/// Decodes an episode from a fragment, and replays it to check that the world and the return are those of the link.
+pub(crate) fn decode(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fault> {
+    let (header, mut numbers) = unpack(fragment)?;
+    let other_version = |what: &str| {
         Fault::new(
             "link/version",
             format!(
@@ -170,32 +170,32 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
     };
     let world = tasks
         .world(&header.request)
-        .map_err(|fault| other(&format!("an episode ({}) that was", fault.message)))?;
+        .map_err(|fault| other_version(&format!("an episode ({}) that was", fault.message)))?;
     if short_hash(&world.hash()) != header.hash {
-        return Err(other("a world that is not the one here, in an episode"));
+        return Err(other_version("a world that is not the one here, in an episode"));
     }
     let mut environment = Environment::new(in_style(world, header.looks)?);
-    let (mut asked, mut actions) = (Asked::default(), Vec::with_capacity(header.steps));
+    let (mut agents, mut actions) = (AgentStates::default(), Vec::with_capacity(header.steps));
     for _ in 0..header.steps {
         let number = pop_number(&mut numbers).ok_or_else(damaged)?;
         let action = if number < LISTED {
-            asked.act(number as usize, &environment)
+            agents.act(number as usize, &environment)
         } else {
-            asked = Asked::default();
+            agents = AgentStates::default();
             let listed = header.listed.get((number - LISTED) as usize);
             listed.copied().map(Action::from)
         };
         let action = action.ok_or_else(damaged)?;
         if environment.ended() || environment.step(action).is_err() {
-            return Err(other("steps that cannot be taken here, in an episode"));
+            return Err(other_version("steps that cannot be taken here, in an episode"));
         }
-        actions.push(Taken::from(action));
+        actions.push(ActionJson::from(action));
     }
     if !numbers.is_empty() {
         return Err(damaged());
     }
     if bits(environment.episode_return()) != header.total {
-        return Err(other("rewards that are not paid here, in an episode"));
+        return Err(other_version("rewards that are not paid here, in an episode"));
     }
     Ok(Link {
         request: header.request,
@@ -204,8 +204,8 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
     })
 }
 
-/// Unpacks a fragment: the line of JSON, and the numbers.
-fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fault> {
+/// Unpacks a fragment into the line of JSON and the step numbers.
+fn unpack(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fault> {
     if fragment.len() > MAX_FRAGMENT {
         return Err(damaged());
     }
@@ -236,7 +236,7 @@ fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), 
     Ok((header, all.drain(end + 1..).collect()))
 }
 
-/// The message is the same for all kinds of damage: knowing the kind does not help to repair a link.
+/// One message serves all kinds of damage, because knowing the kind would not help to repair a link.
 fn damaged() -> Fault {
     Fault::new("link/damaged", "this link is cut or was changed; copy all of it")
 }

@@ -1,5 +1,5 @@
-//! Reads the log of a lifetime from files given to a page: the data of its learning curve, and the episodes whose
-//! actions were recorded. It neither checks nor scores the log.
+//! Reads the log of a lifetime from files given to a page: the data of its learning curve, and the episodes with
+//! recorded actions. It neither checks nor scores the log.
 
 use std::collections::BTreeSet;
 use std::io::Cursor;
@@ -21,22 +21,22 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Reads the files of a log; `bytes` are those of all files, one after the other.
+    /// Reads the files of a log; `bytes` holds the contents of all files, one after the other.
     pub(crate) fn read(files: &[File], mut bytes: &[u8]) -> Result<(Self, Value), Fault> {
         let mut log = Self::default();
         let (mut rows, mut warnings): (Vec<Value>, Vec<String>) = (Vec::new(), Vec::new());
         let (mut tasks, mut metrics): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
         let mut recorded = BTreeSet::new();
         for file in files {
-            let (own, rest) = bytes
+            let (contents, rest) = bytes
                 .split_at_checked(file.length)
                 .ok_or_else(|| Fault::request(format!("{}: found fewer bytes than it has, expected all", file.path)))?;
             bytes = rest;
             let name = file.path.rsplit('/').next().unwrap_or_default();
             if name == "data-log.tsv" {
-                read_rows(&file.path, own, &mut rows, &mut tasks, &mut metrics, &mut warnings)?;
+                read_rows(&file.path, contents, &mut rows, &mut tasks, &mut metrics, &mut warnings)?;
             } else if name.rsplit_once('.').is_some_and(|(_, ending)| ending == "jsonl") {
-                match RecordingReader::new(Cursor::new(own)) {
+                match RecordingReader::new(Cursor::new(contents)) {
                     Ok(mut reader) => loop {
                         match reader.next_episode() {
                             Ok(Some(episode)) => recorded.extend([episode.origin.experience]),
@@ -46,7 +46,7 @@ impl Log {
                     },
                     Err(error) => warnings.push(format!("{}: {error}", file.path)),
                 }
-                log.recordings.push(own.to_vec());
+                log.recordings.push(contents.to_vec());
             }
         }
         if rows.is_empty() && log.recordings.is_empty() {
@@ -104,8 +104,8 @@ fn read_rows(
     let mut table = table.delimiter(b'\t').flexible(true).from_reader(text.as_bytes());
     let unreadable = |error: csv::Error| Fault::new("log/header", format!("{path}: {error}"));
     let header = table.headers().map_err(unreadable)?.clone();
-    let place = |name: &str| header.iter().position(|column| column == name);
-    let needed = ["block_num", "exp_num", "block_type", "task_name"].map(place);
+    let find = |name: &str| header.iter().position(|column| column == name);
+    let needed = ["block_num", "exp_num", "block_type", "task_name"].map(find);
     let [Some(block), Some(experience), Some(kind), Some(task)] = needed else {
         return Err(Fault::new(
             "log/header",
@@ -120,7 +120,7 @@ fn read_rows(
             metrics.push(name.to_owned());
         }
     }
-    let (reward, steps) = (place("reward"), place("steps").or_else(|| place("episode_step_count")));
+    let (reward, steps) = (find("reward"), find("steps").or_else(|| find("episode_step_count")));
     for (number, cells) in (2..).zip(table.records()) {
         let cells = cells.map_err(unreadable)?;
         if cells.len() != header.len() {
@@ -137,8 +137,8 @@ fn read_rows(
                 format!("{path}:{number}: found more than {MAX_ROWS} rows, expected at most that many"),
             ));
         }
-        let whole = |place: usize| cells[place].parse::<u64>().unwrap_or_default();
-        let number = |place: Option<usize>| place.and_then(|place| cells[place].parse::<f64>().ok());
+        let whole = |index: usize| cells[index].parse::<u64>().unwrap_or_default();
+        let number = |index: Option<usize>| index.and_then(|index| cells[index].parse::<f64>().ok());
         if !tasks.iter().any(|known| *known == cells[task]) {
             tasks.push(cells[task].to_owned());
         }

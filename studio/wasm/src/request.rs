@@ -1,4 +1,4 @@
-//! [`WorldRequest`]: how a page or a link identifies a world; [`TaskCache`] parses or samples it.
+//! [`WorldRequest`] identifies a world for a page or a link; [`TaskCache`] parses or samples the world.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub(crate) struct WorldRequest {
     pub(crate) task: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) variant: Option<String>,
-    /// Values that replace those of the variant.
+    /// Values that override those of the variant.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) values: BTreeMap<String, Value>,
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -31,12 +31,12 @@ pub(crate) struct WorldRequest {
     pub(crate) world: Option<String>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires this signature")]
 fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 
-/// The name of a variant whose values were changed.
+/// The name given to a variant with overridden values.
 const CHANGED: &str = "changed";
 
 /// Caches the task that was read last, because a page requests many worlds of the same task.
@@ -45,29 +45,29 @@ pub(crate) struct TaskCache(Option<(String, Arc<TaskSpec>)>);
 
 impl TaskCache {
     /// The task with this name or text.
-    pub(crate) fn task(&mut self, called: &str) -> Result<Arc<TaskSpec>, Fault> {
+    pub(crate) fn task(&mut self, name_or_text: &str) -> Result<Arc<TaskSpec>, Fault> {
         if let Some((known, task)) = &self.0
-            && known == called
+            && known == name_or_text
         {
             return Ok(Arc::clone(task));
         }
-        let task = if is_text(called) {
+        let task = if is_text(name_or_text) {
             let classes = tasks::classes(&driftworld::env::Catalogue::default());
-            TaskSpec::from_json_with("task", called, Some(&classes))?
+            TaskSpec::from_json_with("task", name_or_text, Some(&classes))?
         } else {
-            tasks::task(called)?
+            tasks::task(name_or_text)?
         };
-        self.0 = Some((called.to_owned(), Arc::clone(&task)));
+        self.0 = Some((name_or_text.to_owned(), Arc::clone(&task)));
         Ok(task)
     }
 
     /// The variant of a request, with the values that the request sets.
     pub(crate) fn variant(&mut self, request: &WorldRequest) -> Result<Variant, Fault> {
-        let called = request.task.as_deref().ok_or_else(|| {
+        let name_or_text = request.task.as_deref().ok_or_else(|| {
             Fault::request("request: found no task, expected the name or the text of one, or a world")
         })?;
         let variant = self
-            .task(called)?
+            .task(name_or_text)?
             .variant(request.variant.as_deref().unwrap_or(DEFAULT_VARIANT))?;
         if request.values.is_empty() {
             return Ok(variant);
@@ -98,8 +98,8 @@ impl TaskCache {
 }
 
 /// Whether a task is given by its text rather than by its name.
-pub(crate) fn is_text(called: &str) -> bool {
-    called.trim_start().starts_with(['{', '/', '\u{feff}'])
+pub(crate) fn is_text(name_or_text: &str) -> bool {
+    name_or_text.trim_start().starts_with(['{', '/', '\u{feff}'])
 }
 
 /// The world in the given style, or its own.

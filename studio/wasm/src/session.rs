@@ -1,4 +1,4 @@
-//! [`Session`]: holds the open episodes, networks and log of a page, and answers its calls.
+//! [`Session`]: holds a page's open episodes, networks and log, and answers its calls.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ const MAX_EPISODES: usize = 64;
 pub struct Session {
     tasks: TaskCache,
     episodes: BTreeMap<u32, Episode>,
-    opened: u32,
+    next_id: u32,
     networks: Networks,
     log: Log,
 }
@@ -65,14 +65,14 @@ impl Session {
                 } else {
                     driftworld::tasks::text_by_name(&task).unwrap_or(&task)
                 };
-                tasks::described(&found, text)
+                tasks::describe(&found, text)
             }
-            Call::Validate { text } => tasks::validated(&text),
+            Call::Validate { text } => tasks::validate(&text),
             Call::Schema { kind } => tasks::schema_of(&kind)?,
             Call::Sample { request } => json!(self.tasks.world(&request)?.to_json_pretty()),
             Call::Open { request, style, size } => {
                 let world = in_style(self.tasks.world(&request)?, style)?;
-                self.opened(Episode::new(world, size))?
+                self.store(Episode::new(world, size))?
             }
             Call::Step { episode, steps } => {
                 let episode = self.episode(episode)?;
@@ -88,7 +88,7 @@ impl Session {
             }
             Call::Choose { episode, agent } => {
                 let (episodes, networks) = (&mut self.episodes, &self.networks);
-                json!(crate::call::Taken::from(
+                json!(crate::call::ActionJson::from(
                     open(episodes, episode)?.choose(agent, networks)?
                 ))
             }
@@ -150,15 +150,15 @@ impl Session {
                 worlds,
                 seed,
             } => compare::elements(&mut self.tasks, &task, [&a, &b], worlds, seed)?,
-            Call::Matrix(among) => compare::matrix(&mut self.tasks, &among)?,
+            Call::Matrix(selection) => compare::matrix(&mut self.tasks, &selection)?,
             Call::Order {
-                among,
+                selection,
                 method: name,
                 start,
                 seed,
-            } => compare::ordered(
+            } => compare::order_variants(
                 &mut self.tasks,
-                &among,
+                &selection,
                 method(name.as_deref())?,
                 start.as_deref(),
                 seed,
@@ -181,25 +181,25 @@ impl Session {
                     )));
                 }
                 let world = in_style(recording.world, style)?;
-                self.opened(Episode::with_actions(world, recording.actions, size))?
+                self.store(Episode::with_actions(world, recording.actions, size))?
             }
-            Call::EncodeLink { link } => json!(link::encoded(&mut self.tasks, link)?),
-            Call::DecodeLink { fragment } => json!(link::decoded(&mut self.tasks, &fragment)?),
+            Call::EncodeLink { link } => json!(link::encode(&mut self.tasks, link)?),
+            Call::DecodeLink { fragment } => json!(link::decode(&mut self.tasks, &fragment)?),
         })
     }
 
-    /// Keeps an episode, and returns its number and its description.
-    fn opened(&mut self, episode: Episode) -> Result<Value, Fault> {
+    /// Stores an episode, and returns its description with its number.
+    fn store(&mut self, episode: Episode) -> Result<Value, Fault> {
         if self.episodes.len() == MAX_EPISODES {
             return Err(Fault::request(format!(
                 "open: found {MAX_EPISODES} open episodes, expected fewer; close some"
             )));
         }
-        let mut opened = episode.opened();
-        opened["id"] = json!(self.opened);
-        self.episodes.insert(self.opened, episode);
-        self.opened += 1;
-        Ok(opened)
+        let mut description = episode.description();
+        description["id"] = json!(self.next_id);
+        self.episodes.insert(self.next_id, episode);
+        self.next_id += 1;
+        Ok(description)
     }
 
     fn episode(&mut self, id: u32) -> Result<&mut Episode, Fault> {

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use crate::fault::{Fault, problems_of};
 
-/// Maximum number of variants that a card shows.
-const SHOWN: usize = 4;
+/// Maximum number of example variants on a card.
+const MAX_EXAMPLES: usize = 4;
 
 /// All built-in tasks.
 pub(crate) fn cards() -> Result<Value, Fault> {
@@ -19,12 +19,12 @@ pub(crate) fn cards() -> Result<Value, Fault> {
         let group = group.replace("the paper's", "the L2Explorer paper");
         for (name, _) in names {
             let task = tasks::task(name)?;
-            let described =
+            let example =
                 |variant: &&str| Some(json!({ "variant": variant, "description": task.variant_description(variant)? }));
             let variants = task.variant_names();
             cards.push(json!({
                 "name": name, "group": group, "description": task.description(), "variants": variants,
-                "examples": variants.iter().filter_map(described).take(SHOWN).collect::<Vec<_>>(),
+                "examples": variants.iter().filter_map(example).take(MAX_EXAMPLES).collect::<Vec<_>>(),
             }));
         }
     }
@@ -32,7 +32,7 @@ pub(crate) fn cards() -> Result<Value, Fault> {
 }
 
 /// A task with its parameters and variants, and the text that it was read from.
-pub(crate) fn described(task: &Arc<TaskSpec>, text: &str) -> Value {
+pub(crate) fn describe(task: &Arc<TaskSpec>, text: &str) -> Value {
     let variants = task.all_variants().into_iter().map(|variant| {
         let name = variant.name();
         json!({ "name": name, "description": task.variant_description(name), "values": variant.values() })
@@ -44,19 +44,19 @@ pub(crate) fn described(task: &Arc<TaskSpec>, text: &str) -> Value {
     let requirements = task.requirements().iter().map(ToString::to_string);
     json!({
         "name": task.name(), "description": task.description(), "text": text,
-        "parameters": task.parameters().iter().map(|(name, parameter)| described_parameter(name, parameter)).collect::<Vec<_>>(),
+        "parameters": task.parameters().iter().map(|(name, parameter)| describe_parameter(name, parameter)).collect::<Vec<_>>(),
         "variants": variants.collect::<Vec<_>>(), "families": families.collect::<Vec<_>>(),
         "requirements": requirements.collect::<Vec<_>>(),
     })
 }
 
-fn described_parameter(name: &str, parameter: &Parameter) -> Value {
+fn describe_parameter(name: &str, parameter: &Parameter) -> Value {
     let (mut range, mut choices) = (Value::Null, Value::Null);
     match parameter.domain() {
         Some(Domain::Range(ends)) => range = json!(ends),
         Some(Domain::Choices(values)) => {
             let names = parameter.choices.as_ref().map(Choices::names).unwrap_or_default();
-            let choice = |(place, value)| json!({ "value": value, "name": names.get(place) });
+            let choice = |(index, value)| json!({ "value": value, "name": names.get(index) });
             choices = values.iter().enumerate().map(choice).collect();
         }
         None => {}
@@ -73,7 +73,7 @@ fn described_parameter(name: &str, parameter: &Parameter) -> Value {
 }
 
 /// The problems and warnings of a text.
-pub(crate) fn validated(text: &str) -> Value {
+pub(crate) fn validate(text: &str) -> Value {
     let kind = Kind::of(text);
     let classes = tasks::classes(&Catalogue::default());
     let checked = documents::check(kind.word(), text, kind, &mut tasks::task, &classes);
