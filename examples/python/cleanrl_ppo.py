@@ -1,13 +1,14 @@
-"""PPO in one file, on the native vector environment: nothing between the learner and the loop.
+"""PPO in one file, on the native vector environment, with no library between learner and loop.
 
 In the style of CleanRL: the whole algorithm is in this file, from the network to the update, and uses only PyTorch.
-Apart from PPO, it shows the correct handling of autoreset NEXT_STEP:
+It also shows how to handle autoreset NEXT_STEP correctly:
 
-- The observation returned at the end of an episode *is* its true last one. A truncated episode is therefore
-  bootstrapped from it; a terminated one is not bootstrapped.
-- The step after an end ignores its action and has reward 0. It is not experience, and is excluded from the loss.
+- The observation returned at the end of an episode *is* its last one. A truncated episode is therefore bootstrapped
+  from it; a terminated episode is not bootstrapped.
+- The step after the end of an episode ignores its action and has reward 0. It is not experience, and is excluded from
+  the loss.
 
-Afterwards `Curriculum.run_vector` evaluates it in worlds that it never learned from.
+Afterwards `Curriculum.run_vector` evaluates the policy in worlds that it never learned from.
 
     python examples/python/cleanrl_ppo.py              # a few minutes on two cores
     python examples/python/cleanrl_ppo.py --results    # also writes the result to results/
@@ -25,7 +26,7 @@ import driftworld  # noqa: F401  (registers the environments)
 import gymnasium as gym
 import numpy as np
 import torch
-from record import EVALUATION_SEED, Record, Watch, evaluated, folder_of, held_out
+from record import EVALUATION_SEED, Record, Watch, evaluate_policy, held_out_curriculum, result_folder
 from torch import nn
 
 # Speed in m/s, turn rate in degrees per second, interact: straight ahead, two curves, two turns nearly on the spot.
@@ -46,7 +47,7 @@ def parse_arguments() -> argparse.Namespace:
     )
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument(
-        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
     )
     parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
     arguments = parser.parse_args()
@@ -56,7 +57,7 @@ def parse_arguments() -> argparse.Namespace:
     return arguments
 
 
-# --- the network ------------------------------------------------------------------------------------------------------
+# --- network ------------------------------------------------------------------------------------------------------
 
 
 def layer(module: nn.Module, gain: float = 2**0.5) -> nn.Module:
@@ -105,16 +106,16 @@ class Rollout:
     def advantages(self, discount: float, trace: float) -> torch.Tensor:
         """Generalised advantages (Schulman et al. 2016), `(length, num_envs)`.
 
-        `values[t + 1]` is the value of the observation after step t. Under NEXT_STEP, if an episode ended there, that
-        is its last observation, never the first of the next, so truncation needs no special case.
+        `values[t + 1]` is the value of the observation after step t. Under NEXT_STEP, if an episode ended there, this is
+        its last observation and not the first of the next episode, so truncation needs no special case.
         """
         advantages = torch.zeros_like(self.rewards)
-        later = torch.zeros_like(self.rewards[0])
+        following = torch.zeros_like(self.rewards[0])
         for t in reversed(range(len(self.rewards))):
             bootstrap = self.values[t + 1] * ~self.terminated[t]
-            surprise = self.rewards[t] + discount * bootstrap - self.values[t]
-            later = surprise + discount * trace * later * ~self.ended[t]
-            advantages[t] = later
+            td_error = self.rewards[t] + discount * bootstrap - self.values[t]
+            following = td_error + discount * trace * following * ~self.ended[t]
+            advantages[t] = following
         return advantages
 
 
@@ -133,8 +134,8 @@ class Learner:
         self.returns = np.zeros(envs.num_envs)
 
     @torch.no_grad()
-    def live(self) -> list[float]:
-        """Fills the rollout; gives the returns of the episodes that ended in it."""
+    def collect(self) -> list[float]:
+        """Fills the rollout; returns the returns of the episodes that ended in it."""
         rollout, finished = self.rollout, []
         for t in range(len(rollout.rewards)):
             policy, value = self.agent(self.image)
@@ -181,7 +182,7 @@ class Learner:
                 self.optimizer.step()
 
 
-# --- the program ------------------------------------------------------------------------------------------------------
+# --- program ------------------------------------------------------------------------------------------------------
 
 
 def main() -> None:
@@ -203,7 +204,7 @@ def main() -> None:
     curve: list[dict[str, float]] = []
     recent: list[float] = []
     for update in range(updates):
-        recent = (recent + learner.live())[-200:]
+        recent = (recent + learner.collect())[-200:]
         learner.learn(update / updates)
         steps, seconds = (update + 1) * steps_per_update, watch.seconds
         if recent and (update % 10 == 9 or update == updates - 1):
@@ -218,8 +219,8 @@ def main() -> None:
     def probabilities(observations: Any) -> Any:
         return learner.agent(torch.from_numpy(observations))[0].probs.numpy()
 
-    worlds = held_out(f"find_objects#{arguments.variant}", arguments.episodes)
-    scored = evaluated(worlds, probabilities, arguments.policy, arguments.seed, arguments.num_envs, options)
+    worlds = held_out_curriculum(f"find_objects#{arguments.variant}", arguments.episodes)
+    scored = evaluate_policy(worlds, probabilities, arguments.policy, arguments.seed, arguments.num_envs, options)
     print(f"{arguments.policy}, in worlds never learned from: {scored}")
     if arguments.results:
         Record(

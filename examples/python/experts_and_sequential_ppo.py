@@ -1,8 +1,8 @@
-"""Single-task experts, and one PPO that meets their tasks one after the other: what does it keep, what carries over?
+"""Trains single-task experts, and one PPO on their tasks in turn: what does it retain, and what transfers?
 
-The task is `two_skies.json` beside this file: by day blue cubes pay and red ones cost, in the evening it is the other
-way round. The sky is the learner's only cue; one policy could solve both. The learner meets day, evening, day, evening,
-and is frozen and evaluated in both before and after each block.
+The task is `two_skies.json` beside this file: by day blue cubes pay and red ones cost; in the evening it is the other
+way round. The sky is the learner's only cue, and one policy could solve both. The learner trains on day, evening, day,
+evening; before and after each block it is frozen and evaluated on both.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
     python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # also writes to results/
@@ -27,7 +27,7 @@ import driftworld
 import numpy as np
 import torch
 from driftworld.learners import PPO, Settings
-from record import T_95, Record, Watch, folder_of
+from record import T_95, Record, Watch, result_folder
 from torch import nn
 
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
@@ -69,7 +69,7 @@ class Learner(PPO):
     Args:
         seed: The seed of network, actions and minibatches.
         num_envs: Number of environments.
-        policy: Actions in evaluations: `"sampled"` from its policy, or `"greedy"`, the likeliest.
+        policy: Actions in evaluations: `"sampled"` from the policy, or `"greedy"`, the most probable ones.
         length: Steps of each environment between updates.
         **options: Options of the method.
     """
@@ -78,7 +78,7 @@ class Learner(PPO):
     epochs = 4
 
     def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64, **options: Any) -> None:
-        # An object pays or costs 100.
+        # An object pays or costs 100 points.
         settings = Settings(rollout=length, epochs=self.epochs, learning_rate=5e-4, entropy=0.01, reward_scale=0.01)
         super().__init__(len(ACTIONS), num_envs, seed=seed, size=64, policy=policy, settings=settings, **options)
 
@@ -90,7 +90,7 @@ class Learner(PPO):
 def scenario(
     order: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluated: tuple[str, ...] = VARIANTS
 ) -> dict[str, Any]:
-    """Learning blocks in an order, with evaluations around each in worlds that are not learned from."""
+    """A scenario with learning blocks in the given order, each between evaluations in worlds that are not learned from."""
 
     def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
@@ -111,48 +111,48 @@ def scenario(
 
 
 def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Runs a scenario and logs every experience, or finds the finished log; returns its duration and the results of its
-    blocks.
+    """Runs a scenario and logs every experience, unless its finished log exists; returns the duration of the run and the
+    results of its blocks.
     """
-    agent, kept = folder.name, folder.with_suffix(".json")
+    agent, record_file = folder.name, folder.with_suffix(".json")
     made_with = {"scenario": plan, "policy": learner.policy, "num_envs": arguments.num_envs}
-    if kept.exists() and not arguments.again:
-        done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-        if done["made_with"] == made_with:
-            print(f"{agent}: found in {folder}, not lived again (--again does)")
+    if record_file.exists() and not arguments.again:
+        done: dict[str, Any] = json.loads(record_file.read_text(encoding="utf-8"))
+        if done["made_with"] == made_with and "results" in done:
+            print(f"{agent}: found in {folder}, not run again (--again does)")
             return done
     shutil.rmtree(folder, ignore_errors=True)
     watch = Watch()
     learner.name = agent
     curriculum = driftworld.Curriculum.from_dict(plan)
     summary = curriculum.run_vector(learner, folder, num_envs=arguments.num_envs, **OPTIONS)
-    told = blocks_of(summary, folder)
-    for row in told:
+    results = blocks_of(summary, folder)
+    for row in results:
         print(f"{agent}: block {row['block']} {row['kind']:10} {row['variant']}: reward {row['reward']:6.1f}", flush=True)
     done = {
-        "made_with": made_with, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told,
+        "made_with": made_with, "seconds": round(watch.seconds, 1), "load_before": watch.load, "results": results,
         "optimiser_steps": learner.updates,
     }  # fmt: skip
-    kept.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
+    record_file.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
     return done
 
 
 def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]:
-    """The results of each regime: the mean reward of its last 200 experiences, its success rate, and the number of
-    experiences learned from so far.
+    """The result of each regime: the mean reward of its last 200 experiences, its success rate, and the number of
+    experiences learned from up to its end.
     """
     log = driftworld.read_log(folder)
-    told, learned, first = [], 0, 0
+    results, learned, first = [], 0, 0
     for regime in summary.regimes:
         rewards = log["reward"][first : first + regime["experiences"]]
         first += regime["experiences"]
         learned += regime["experiences"] * (regime["kind"] == "learning")
-        told.append({
+        results.append({
             "block": regime["block"], "kind": regime["kind"], "variant": regime["variant"].partition("#")[2],
             "experiences": learned, "reward": round(float(np.mean(rewards[-200:])), 1),
             "success": round(regime["success_rate"], 3),
         })  # fmt: skip
-    return told
+    return results
 
 
 def parse_arguments(program: str, text: str) -> argparse.Namespace:
@@ -171,7 +171,7 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
     parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
     parser.add_argument(
-        "--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(program), metavar="FOLDER", help="write the result down"
     )
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
     arguments = parser.parse_args()
@@ -184,42 +184,40 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
 MakeLearner = Callable[[int, int, str], Learner]
 
 
-def live_experts(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """Trains experts with the same learner, one for each variant and seed, with as much experience as the lifetime's
-    blocks of the variant.
-
-    They are evaluated in the same worlds as the lifetime. Returns their logs.
+def run_experts(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+    """Trains experts with the same learner, one for each variant and seed, with as much experience of the variant as the
+    lifetime gets, and evaluates them in the same worlds as the lifetime. Returns the results by log folder.
     """
-    lived = {}
+    lifetimes = {}
     for seed in arguments.seeds:
         for variant in VARIANTS:
             folder = arguments.logs / f"expert_{name}_{variant}_{seed}"
             order = tuple(block for block in ORDER if block == variant)
             plan = scenario(order, seed, arguments, evaluated=(variant,))
-            lived[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
-    return lived
+            lifetimes[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
+    return lifetimes
 
 
-def live_lifetimes(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """Runs a lifetime over all variants for each seed; returns their logs."""
-    lived = {}
+def run_lifetimes(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+    """Runs a lifetime over all variants for each seed; returns the results by log folder."""
+    lifetimes = {}
     for seed in arguments.seeds:
         folder, plan = arguments.logs / f"{name}_{seed}", scenario(ORDER, seed, arguments)
-        lived[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
-    return lived
+        lifetimes[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
+    return lifetimes
 
 
-def evaluations(lived: Mapping[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
-    """A row for each lifetime, variant and evaluation, without averaging."""
+def evaluations(lifetimes: Mapping[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
+    """A row for each lifetime, variant and evaluation; nothing is averaged."""
     return [
         {
-            "run": f"{row['variant']}{label}" + ("" if len(lived) == 1 else f", {folder.name.rpartition('_')[2]}"),
+            "run": f"{row['variant']}{label}" + ("" if len(lifetimes) == 1 else f", {folder.name.rpartition('_')[2]}"),
             "experiences": row["experiences"],
             "reward": row["reward"],
             "success": row["success"],
         }
-        for folder, done in lived.items()
-        for row in sorted(done["told"], key=lambda row: row["variant"])
+        for folder, done in lifetimes.items()
+        for row in sorted(done["results"], key=lambda row: row["variant"])
         if row["kind"] == "evaluation"
     ]
 
@@ -228,13 +226,13 @@ def levels(experts: Mapping[Path, dict[str, Any]]) -> dict[str, float]:
     """The experts' rewards in their last evaluation, averaged over seeds."""
     earned: dict[str, list[float]] = {}
     for done in experts.values():
-        earned.setdefault(f"expert, {done['told'][-1]['variant']}", []).append(done["told"][-1]["reward"])
+        earned.setdefault(f"expert, {done['results'][-1]['variant']}", []).append(done["results"][-1]["reward"])
     return {f"{name} (n = {len(each)})": round(float(np.mean(each)), 1) for name, each in earned.items()}
 
 
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
-    """A row for each metric, a column for each agent: the mean over its lifetimes, with a 95 % interval if there are
-    several.
+    """A row for each metric and a column for each agent, with the mean over its lifetimes and, if there are several, its
+    95 % interval.
     """
     names = list(next(iter(agents.values())).lifetime)
 
@@ -260,33 +258,33 @@ def show(rows: list[dict[str, Any]]) -> None:
 def main() -> None:
     """Runs the experts, then the lifetimes, then scores them."""
     arguments = parse_arguments(__file__, __doc__ or "")
-    experts = live_experts("sequential", Learner, arguments)
-    lived = live_lifetimes("sequential_ppo", Learner, arguments)
-    scores = driftworld.metrics(list(lived), ste=list(experts))
+    experts = run_experts("sequential", Learner, arguments)
+    lifetimes = run_lifetimes("sequential_ppo", Learner, arguments)
+    scores = driftworld.metrics(list(lifetimes), ste=list(experts))
     table = scores_table(sequential=scores)
     show(table)
-    page = driftworld.report(list(lived), ste=list(experts), title="A sequential PPO under two skies")
+    page = driftworld.report(list(lifetimes), ste=list(experts), title="A sequential PPO under two skies")
     (arguments.logs / "sequential_ppo.html").write_text(page, encoding="utf-8")
     print(f"the report is {arguments.logs / 'sequential_ppo.html'}")
     if arguments.results:
-        everything = [*experts.values(), *lived.values()]
+        runs = [*experts.values(), *lifetimes.values()]
         Record(
             title="Experts, and a sequential PPO",
             text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
             f"{arguments.learn} experiences each, and is evaluated in both around each block ({arguments.evaluate} worlds each, {arguments.policy} "
             f"policy); experts are the same learner with the same experience of one variant alone, evaluated in the same worlds. "
-            f"{said_of(arguments.seeds)} The curve is of the evaluations.",
-            settings={**vars(arguments), **OPTIONS, "optimiser_steps": [done["optimiser_steps"] for done in lived.values()]},
+            f"{sample_size_note(arguments.seeds)} The curve is of the evaluations.",
+            settings={**vars(arguments), **OPTIONS, "optimiser_steps": [done["optimiser_steps"] for done in lifetimes.values()]},
             variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
-            curve=evaluations(lived), lines=levels(experts), table=table, axes=("experiences", "reward"),
+            curve=evaluations(lifetimes), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, each lifetime"),
-            seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["made_with"]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
+            seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
+            files={"curriculum.json": runs[-1]["made_with"]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
         ).write(arguments.results)  # fmt: skip
 
 
-def said_of(seeds: list[int]) -> str:
-    """The number of lifetimes, and what can be concluded from it."""
+def sample_size_note(seeds: list[int]) -> str:
+    """States the number of lifetimes, and what can be concluded from them."""
     if len(seeds) == 1:
         return "One lifetime (n = 1): what it shows of this seed need not hold for another, and no difference can be told from luck."
     return f"n = {len(seeds)} lifetimes, each with worlds and a network of its own."

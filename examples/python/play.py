@@ -38,22 +38,22 @@ def main() -> None:
         help="what is shown",
     )
     parser.add_argument("--quick", action="store_true", help="without a display, end after 20 steps")
-    asked = parser.parse_args()
-    if asked.quick:
+    arguments = parser.parse_args()
+    if arguments.quick:
         os.environ["SDL_VIDEODRIVER"] = "dummy"
     play(
-        asked.task,
-        asked.variant,
-        seed=asked.seed,
-        camera=asked.camera,
-        most_steps=20 if asked.quick else None,
+        arguments.task,
+        arguments.variant,
+        seed=arguments.seed,
+        camera=arguments.camera,
+        max_steps=20 if arguments.quick else None,
     )
 
 
-def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: int | None) -> None:
-    """Lets a person play; returns when they quit, or after `most_steps` steps."""
+def play(task: str, variant: str | None, *, seed: int, camera: str, max_steps: int | None) -> None:
+    """Lets a person play; returns when they quit, or after `max_steps` steps."""
     import pygame
-    from gymnasium.utils.play import play as gymnasiums_play
+    from gymnasium.utils.play import play as gymnasium_play
 
     env = Episodes(
         gymnasium.make(
@@ -65,26 +65,24 @@ def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: 
             camera=camera,
             disable_env_checker=True,
         ),
-        most_steps,
+        max_steps,
     )
     print(f"{task}: {KEYS}")
     pygame.display.init()
     pygame.display.set_caption(f"Driftworld {task}: {KEYS}")
-    gymnasiums_play(env, seed=seed, noop=np.zeros(env.action_space.shape, dtype=np.float32))
+    gymnasium_play(env, seed=seed, noop=np.zeros(env.action_space.shape, dtype=np.float32))
     env.close()
     print(f"{env.num_episodes} episodes ended, {env.num_steps} steps")
 
 
 class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Prints events, continues with the next world after an episode, and asks the window to close after the last
-    step.
-    """
+    """Prints events, moves on to the next world after an episode, and closes the window after the last step."""
 
-    def __init__(self, env: gymnasium.Env[Any, Any], most_steps: int | None) -> None:
+    def __init__(self, env: gymnasium.Env[Any, Any], max_steps: int | None) -> None:
         super().__init__(env)
         self.num_episodes = 0
         self.num_steps = 0
-        self._most_steps = most_steps
+        self._max_steps = max_steps
         self._return = 0.0
         self._index: int | None = None
         self._length = 0
@@ -94,8 +92,8 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         if self._index is None:
             observation, info = self.env.reset(seed=seed, options=options)
         else:
-            again = self._index if self._length == 0 else self._index + 1
-            observation, info = self.env.reset(options={"index": again})
+            index = self._index if self._length == 0 else self._index + 1
+            observation, info = self.env.reset(options={"index": index})
         if self._index != info["index"]:
             variant = self.unwrapped.origin()["variant_id"]  # type: ignore[attr-defined]
             print(f"world {info['index']} of {variant}")
@@ -115,7 +113,7 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         if terminated or truncated:
             self.num_episodes += 1
             print(f"  over: return {self._return:.1f}, {'success' if info['is_success'] else 'no success'}")
-        if self.num_steps == self._most_steps:
+        if self.num_steps == self._max_steps:
             import pygame
 
             pygame.event.post(pygame.event.Event(pygame.QUIT))

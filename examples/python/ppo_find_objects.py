@@ -1,7 +1,7 @@
 """Stable-Baselines3's PPO learns to find objects from 64 × 64 colour pictures, in minutes on two cores.
 
-The learner only gets the agent's view. It is compared with a random agent and with the planner, which knows the map and
-walks from cube to cube, both in the same environment.
+The learner only gets the agent's view. It is compared with two agents in the same environment: a random one, and the
+planner, which knows the map and walks from cube to cube.
 
     python examples/python/ppo_find_objects.py                               # one seed
     python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # also writes the result to results/
@@ -24,7 +24,7 @@ import gymnasium as gym
 import numpy as np
 import torch
 from driftworld.adapters.sb3 import make_vec_env
-from record import EVALUATION_SEED, T_95, Record, Watch, evaluated, folder_of, held_out
+from record import EVALUATION_SEED, T_95, Record, Watch, evaluate_policy, held_out_curriculum, result_folder
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -62,7 +62,7 @@ class Curve(BaseCallback):
 
     def __init__(self, seed: int) -> None:
         super().__init__()
-        self.seed, self.rows, self.began = seed, [], time.perf_counter()  # type: ignore[var-annotated]
+        self.seed, self.rows, self.start = seed, [], time.perf_counter()  # type: ignore[var-annotated]
 
     def _on_step(self) -> bool:
         return True
@@ -71,7 +71,7 @@ class Curve(BaseCallback):
         episodes = self.model.ep_info_buffer
         if not episodes or not self.model.ep_success_buffer:
             return
-        seconds = time.perf_counter() - self.began
+        seconds = time.perf_counter() - self.start
         row = {
             "seed": self.seed,
             "steps": self.num_timesteps,
@@ -89,9 +89,9 @@ class Curve(BaseCallback):
 
 
 def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str, Any]]]:
-    """Learns from scratch; returns the learner and its curve."""
+    """Trains from scratch; returns the model and its learning curve."""
     envs = make_vec_env(ID, arguments.num_envs, seed=seed, variant=arguments.variant, **OPTIONS)
-    # The curve has the task's rewards; the learner gets them scaled to about 1.
+    # The curve shows the task's rewards; the learner gets them scaled to about 1.
     envs = VecNormalize(envs, norm_obs=False, gamma=0.98)
     model = PPO(
         "CnnPolicy", envs, seed=seed, device="cpu",
@@ -115,13 +115,13 @@ def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed
         images, _ = model.policy.obs_to_tensor(observations)
         return model.policy.get_distribution(images).distribution.probs.numpy()  # type: ignore[union-attr, attr-defined]
 
-    worlds = held_out(f"find_objects#{arguments.variant}", arguments.episodes)
-    return evaluated(worlds, probabilities, policy, seed, arguments.num_envs, OPTIONS)
+    worlds = held_out_curriculum(f"find_objects#{arguments.variant}", arguments.episodes)
+    return evaluate_policy(worlds, probabilities, policy, seed, arguments.num_envs, OPTIONS)
 
 
 def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
-    """The reward and success of the agent on rails, which knows the map; it holds actions as long as the learner
-    does, unless `changes` say otherwise.
+    """Reward and success of the planner, which knows the map. It holds actions as long as the learner does, unless
+    `changes` set another duration.
     """
     env = gym.make(ID, variant=arguments.variant, **(OPTIONS | changes))
     variant = driftworld.TaskSpec.load("find_objects").variant(arguments.variant)
@@ -151,7 +151,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument(
-        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
     )
     parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
     arguments = parser.parse_args()
@@ -194,12 +194,12 @@ def main() -> None:
                 "of them with all cubes found": scored["success"],
             })  # fmt: skip
         if arguments.results:
-            # Writes the results so far: an interrupted run keeps its finished seeds.
-            write_down(arguments, curve, table, lines, watch)
+            # Write the results so far, so that an interrupted run keeps its finished seeds.
+            write_result(arguments, curve, table, lines, watch)
 
 
-def over_seeds(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The table, followed by the means of 2 to 10 seeds with their 95 % intervals."""
+def with_means(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The table, followed by the means over 2 to 10 seeds with 95 % intervals."""
     rows = list(table)
     for policy in ("sampled", "greedy"):
         own = [row for row in table if row["policy"] == policy]
@@ -208,21 +208,21 @@ def over_seeds(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
         mean = {"seed": f"mean of {len(own)}, 95 %", "policy": policy, "steps": own[0]["steps"], "minutes": ""}
         for name in list(own[0])[len(mean) :]:
             numbers = np.array([row[name] for row in own])
-            reach = T_95[len(own) - 2] * numbers.std(ddof=1) / len(own) ** 0.5
+            half_width = T_95[len(own) - 2] * numbers.std(ddof=1) / len(own) ** 0.5
             digits = 3 if name.startswith("of them") else 1
-            mean[name] = f"{numbers.mean():.{digits}f} ± {reach:.{digits}f}"
+            mean[name] = f"{numbers.mean():.{digits}f} ± {half_width:.{digits}f}"
         rows.append(mean)
     return rows
 
 
-def write_down(
+def write_result(
     arguments: argparse.Namespace,
     curve: list[dict[str, Any]],
     table: list[dict[str, Any]],
     lines: dict[str, float],
     watch: Watch,
 ) -> None:
-    """Writes the result, with the finished seeds."""
+    """Writes the result of the finished seeds."""
     done = list(dict.fromkeys(row["seed"] for row in table))
     Record(
         title="PPO finds objects",
@@ -233,7 +233,7 @@ def write_down(
         settings={"id": ID, **vars(arguments), "seeds": done, **OPTIONS, "evaluation_seed": EVALUATION_SEED},
         variants=[f"find_objects#{arguments.variant}"],
         seeds=[*done, EVALUATION_SEED],
-        curve=curve, lines=lines, table=over_seeds(table), seconds=watch.seconds, load_before=watch.load,
+        curve=curve, lines=lines, table=with_means(table), seconds=watch.seconds, load_before=watch.load,
         labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
     ).write(arguments.results)  # fmt: skip
 

@@ -1,7 +1,7 @@
-"""Ray Data draws a million variants by shard, measures how far each is from the first, and samples a world of each.
+"""Ray Data draws a million variants in shards, measures the distance of each from the first, and samples a world of each.
 
-Variant number i is a pure function of the seed and i, and so is its world. Shards have a fixed size whichever worker
-runs them, and are merged in order: the numbers and the digest are the same on one worker and on a thousand.
+Variant number i and its world are pure functions of the seed and i. Shards have a fixed size, whichever worker runs them,
+and are merged in order, so the numbers and the digest are the same on one worker and on a thousand.
 
     python examples/python/ray_sample_and_measure.py --variants 1000000            # on this machine's processors
     python examples/python/ray_sample_and_measure.py --variants 1000000 --address auto    # on the cluster that this machine is in
@@ -26,10 +26,10 @@ import driftworld
 import numpy as np
 import ray
 import ray.data
-from record import Record, Watch, folder_of
+from record import Record, Watch, result_folder
 
 TASK = "find_objects"
-# The varied parameters, with their whole ranges. The others keep the first variant's values.
+# The parameters that vary, with their full ranges. The others keep the first variant's values.
 RANGES = {
     "light": (0.2, 4.0),
     "spread": (2.0, 40.0),
@@ -40,20 +40,20 @@ RANGES = {
 COLOURS = ("blue", "red", "green")
 ELEMENTS = ("S", "A", "T", "R", "O")
 BINS = 20
-# The largest distance: each parameter over its whole range counts 1, and so does the colour.
+# The largest distance: the full range of each parameter counts 1, and so does the colour.
 MAX_DISTANCE = float(len(RANGES) + 1)
 
 
 def variant_of(task: driftworld.TaskSpec, seed: int, number: int) -> driftworld.Variant:
-    """Variant number `number` under a seed."""
-    chance = np.random.Generator(np.random.Philox(key=[seed, number]))
-    changes: dict[str, Any] = {name: float(chance.uniform(low, high)) for name, (low, high) in RANGES.items()}
-    changes["target_color"] = COLOURS[int(chance.integers(len(COLOURS)))]
+    """Variant number `number` of a seed."""
+    generator = np.random.Generator(np.random.Philox(key=[seed, number]))
+    changes: dict[str, Any] = {name: float(generator.uniform(low, high)) for name, (low, high) in RANGES.items()}
+    changes["target_color"] = COLOURS[int(generator.integers(len(COLOURS)))]
     return task.variant("blue").with_values(f"drawn_{number}", **changes)
 
 
 def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: int) -> dict[str, list[Any]]:
-    """Measures some shards: a row of sums, counts and a digest for each."""
+    """Measures some shards; returns sums, counts and a digest for each."""
     task = driftworld.TaskSpec.load(TASK)
     first = task.variant("blue")
     rows = []
@@ -82,7 +82,7 @@ def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: 
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-def brought_together(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def merge_shards(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Merges all shards, in the order of their numbers."""
     rows = sorted(rows, key=lambda row: row["shard"])
     count = sum(int(row["count"]) for row in rows)
@@ -108,7 +108,7 @@ def measure_all(variants: int, seed: int, shard_size: int, workers: int) -> dict
     dataset = ray.data.range(shards, override_num_blocks=min(shards, 4 * workers)).map_batches(
         work, batch_size=1, compute=ray.data.TaskPoolStrategy(size=workers)
     )
-    return brought_together(dataset.take_all())
+    return merge_shards(dataset.take_all())
 
 
 def connect(address: str | None, workers: int) -> None:
@@ -131,7 +131,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="how many work at the same time")
     parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
     parser.add_argument(
-        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
     )
     parser.add_argument("--quick", action="store_true", help="a few variants, to see that it runs")
     arguments = parser.parse_args()
@@ -146,9 +146,9 @@ def main() -> None:
     watch = Watch()
     connect(arguments.address, arguments.workers)
     ray.data.DataContext.get_current().enable_progress_bars = False
-    began = time.perf_counter()
+    start = time.perf_counter()
     answer = measure_all(arguments.variants, arguments.seed, arguments.shard_size, arguments.workers)
-    seconds = time.perf_counter() - began
+    seconds = time.perf_counter() - start
     ray.shutdown()
     print(json.dumps(answer, indent=2))
     print(f"{arguments.variants / seconds:,.0f} variants a second with {arguments.workers} workers")

@@ -1,4 +1,4 @@
-"""Not an example: records the results of the examples, so that they can be reproduced.
+"""Not an example: records results of the examples, so that they can be reproduced.
 
 A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first
 worlds), `curve.csv`, `curve.png`, and a `README.md` generated from them.
@@ -23,15 +23,15 @@ import numpy as np
 
 # The seed of the held-out worlds.
 EVALUATION_SEED = 1_000_000
-# Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
+# Student's t for 95 % intervals of means of 2, 3, … 10 numbers.
 T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 FOLDER = Path(__file__).parent / "results"
-# Settings of where and how to run, such as the folder of results; they differ between users and are not recorded.
-_WHERE = ("logs", "results", "quick", "again", "threads", "address")
+# Settings that differ between users, such as the folder of results, and are therefore not recorded.
+_UNRECORDED = ("logs", "results", "quick", "again", "threads", "address")
 PACKAGES = ("driftworld", "gymnasium", "numpy", "torch", "stable-baselines3", "ray")
 
 
-def folder_of(program: str) -> str:
+def result_folder(program: str) -> str:
     """The name of an example's result folder."""
     return str(FOLDER / Path(program).stem)
 
@@ -40,39 +40,39 @@ class Watch:
     """The start of a run, and the machine's load at that time."""
 
     def __init__(self) -> None:
-        self._began = time.perf_counter()
+        self._start = time.perf_counter()
         self.load = round(os.getloadavg()[0], 2)
 
     @property
     def seconds(self) -> float:
         """Seconds since the start."""
-        return time.perf_counter() - self._began
+        return time.perf_counter() - self._start
 
 
-class Evaluated:
+class FrozenPolicy:
     """A policy under evaluation: a `driftworld.VectorAgent` that does not learn.
 
     Args:
         probabilities: Maps observations to action probabilities, `(num_envs, actions)`.
-        policy: `"sampled"` from them, or `"greedy"`, the likeliest.
-        seed: Seeds its actions, together with the seed of each experience.
+        policy: `"sampled"` draws actions from them; `"greedy"` takes the most probable.
+        seed: Seeds the actions, together with the seed of each experience.
         num_envs: Number of environments.
     """
 
     def __init__(self, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int) -> None:
         self.probabilities, self.policy, self.seed = probabilities, policy, seed
-        self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
+        self.generators = [np.random.default_rng(seed) for _ in range(num_envs)]
 
     def begin(self, env: int, label: str | None, seed: int) -> None:
-        """Called before an experience: its actions depend on its own seed, and on no generator used for learning."""
-        self.chances[env] = np.random.default_rng([seed, self.seed])
+        """Seeds the actions of an experience, so that they do not depend on generators used for learning."""
+        self.generators[env] = np.random.default_rng([seed, self.seed])
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
         """Actions for all environments, `(num_envs,)`."""
         probabilities = np.asarray(self.probabilities(observations), dtype=np.float64)
         if self.policy == "greedy":
             return probabilities.argmax(axis=1)
-        drawn = np.array([chance.random() for chance in self.chances])
+        drawn = np.array([generator.random() for generator in self.generators])
         return np.minimum((probabilities.cumsum(axis=1) < drawn[:, None]).sum(axis=1), probabilities.shape[1] - 1)
 
     def learn(self, transition: Any) -> None:
@@ -82,8 +82,8 @@ class Evaluated:
         """Does nothing: the policy is always frozen."""
 
 
-def held_out(variant: str, episodes: int) -> Any:
-    """A curriculum of one evaluation, in worlds 0 to `episodes` - 1 under the held-out seed."""
+def held_out_curriculum(variant: str, episodes: int) -> Any:
+    """A curriculum with one evaluation, in worlds 0 to `episodes` - 1 of the held-out seed."""
     import driftworld
 
     task, _, name = variant.partition("#")
@@ -92,13 +92,13 @@ def held_out(variant: str, episodes: int) -> Any:
     return driftworld.Curriculum.from_dict({"version": 1, "name": "held_out", "blocks": blocks})
 
 
-def evaluated(
+def evaluate_policy(
     curriculum: Any, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int, options: dict[str, Any]
 ) -> dict[str, float]:
     """Mean reward, its standard deviation over episodes, and the share of solved episodes."""
     rewards: list[float] = []
     summary = curriculum.run_vector(
-        Evaluated(probabilities, policy, seed, num_envs),
+        FrozenPolicy(probabilities, policy, seed, num_envs),
         num_envs=num_envs,
         watch=lambda experience, reward: rewards.append(reward),
         **options,
@@ -118,16 +118,17 @@ class Record:
     Attributes:
         title: The heading of its page.
         text: A description of the run, in a few sentences.
-        settings: All settings: the environment's options, the learner's, the seeds.
+        settings: All settings: options of the environment, options of the learner, and seeds.
         variants: The variants that were used, `task#variant`.
-        seeds: The seeds whose first worlds are recorded by hash.
+        seeds: Seeds; the hash of the first world of each is recorded.
         curve: Rows of numbers; those with the same `seed` (or `run`) form one line of the figure.
         seconds: Duration of the run.
         load_before: The machine's load before the run.
-        lines: Levels to compare with, by name, drawn across the figure.
+        lines: Levels for comparison, by name, drawn as horizontal lines.
         table: Rows of the page's table.
-        files: Additional files: texts and documents by file name.
-        axes: The columns of the curve to draw: horizontal and vertical.
+        files: Additional files, texts or JSON documents, by file name.
+        axes: The columns of the curve on the horizontal and the vertical axis.
+        labels: The labels of these axes.
     """
 
     title: str
@@ -164,21 +165,21 @@ class Record:
 
     def _config(self) -> dict[str, Any]:
         return {
-            "command": " ".join(["python", f"examples/python/{Path(sys.argv[0]).name}", *_spoken(sys.argv[1:])]),
+            "command": " ".join(["python", f"examples/python/{Path(sys.argv[0]).name}", *_portable(sys.argv[1:])]),
             "date": datetime.date.today().isoformat(),
             "seconds": round(self.seconds, 1),
             "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.load_before},
             "versions": {"python": platform.python_version(), **_versions()},
-            "settings": {name: value for name, value in self.settings.items() if name not in _WHERE},
+            "settings": {name: value for name, value in self.settings.items() if name not in _UNRECORDED},
             "worlds": {variant: _hashes(variant, self.seeds) for variant in self.variants},
         }
 
     def _page(self, config: Mapping[str, Any]) -> str:
         machine, versions = config["machine"], config["versions"]
-        written = ", ".join(f"{name} {version}" for name, version in versions.items())
-        made = (
+        package_versions = ", ".join(f"{name} {version}" for name, version in versions.items())
+        provenance = (
             f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores "
-            f"({machine['processor']}; load of the machine before it began {machine['load_before']}), with {written}."
+            f"({machine['processor']}; load of the machine before it began {machine['load_before']}), with {package_versions}."
         )
         parts = [f"# {self.title}", "", self.text, "", "```sh", config["command"], "```", ""]
         if self.curve:
@@ -187,7 +188,7 @@ class Record:
         if self.lines:
             parts += [*_table([{"to compare with": name, "reward": level} for name, level in self.lines.items()]), ""]
         parts += [
-            made,
+            provenance,
             "",
             "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
         ]
@@ -203,7 +204,7 @@ class Record:
         matplotlib.use("Agg")
         from matplotlib import pyplot
 
-        across, up = self.axes
+        x_column, y_column = self.axes
         key = next((name for name in ("run", "seed") if name in self.curve[0]), None)
         figure, axes = pyplot.subplots(figsize=(7.2, 4.2), dpi=120, layout="constrained")
         names = dict.fromkeys(row[key] for row in self.curve) if key else {None: None}
@@ -214,8 +215,8 @@ class Record:
         for name, (first, _, second) in zip(names, parts, strict=True):
             rows = [row for row in self.curve if key is None or row[key] == name]
             axes.plot(
-                [row[across] for row in rows],
-                [row[up] for row in rows],
+                [row[x_column] for row in rows],
+                [row[y_column] for row in rows],
                 label=None if key is None else f"{key} {name}" if key == "seed" else str(name),
                 color=f"C{colours.index(first)}",
                 linestyle=("-", "--")[styles.index(second) % 2],
@@ -237,22 +238,22 @@ class Record:
         pyplot.close(figure)
 
 
-def _spoken(arguments: Iterable[str]) -> list[str]:
-    """The arguments without the result folder, which differs between users."""
+def _portable(arguments: Iterable[str]) -> list[str]:
+    """The command line without the result folder, which differs between users."""
     words = list(arguments)
     if "--results" in words:
-        place = words.index("--results")
-        follows = place + 1 < len(words) and not words[place + 1].startswith("--")
-        words[place : place + 2 if follows else place + 1] = ["--results"]
+        index = words.index("--results")
+        has_folder = index + 1 < len(words) and not words[index + 1].startswith("--")
+        words[index : index + 2 if has_folder else index + 1] = ["--results"]
     return words
 
 
 def _table(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     if not rows:
         return []
-    heads = list(rows[0])
-    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
-    return [*lines, *("| " + " | ".join(_cell(row[head]) for head in heads) + " |" for row in rows)]
+    columns = list(rows[0])
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    return [*lines, *("| " + " | ".join(_cell(row[column]) for column in columns) + " |" for row in rows)]
 
 
 def _cell(value: Any) -> str:

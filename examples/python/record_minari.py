@@ -35,18 +35,18 @@ def main() -> None:
         action="store_true",
         help="record 4 short episodes into a temporary folder",
     )
-    asked = parser.parse_args()
-    if asked.quick:
+    arguments = parser.parse_args()
+    if arguments.quick:
         with tempfile.TemporaryDirectory() as folder:
             os.environ["MINARI_DATASETS_PATH"] = folder
-            record(asked.dataset, episodes=4, seed=asked.seed, max_steps=20)
+            record(arguments.dataset, episodes=4, seed=arguments.seed, max_steps=20)
     else:
-        record(asked.dataset, episodes=asked.episodes, seed=asked.seed, max_steps=200)
+        record(arguments.dataset, episodes=arguments.episodes, seed=arguments.seed, max_steps=200)
 
 
 def record(dataset_id: str, *, episodes: int, seed: int, max_steps: int) -> None:
     """Writes a data set of random actions and prints the metadata of its episodes."""
-    # Minari reads its folder setting on import.
+    # Minari reads MINARI_DATASETS_PATH when it is imported.
     import minari
     from driftworld.adapters.minari import collect
 

@@ -1,4 +1,4 @@
-"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on a cluster.
+"""RLlib's PPO on Find Objects, with env runners that step native vector environments; on a cluster it only needs an address.
 
     python examples/python/rllib_ppo.py                    # a cluster of this machine's own
     python examples/python/rllib_ppo.py --address auto     # the Ray cluster that this machine is in
@@ -33,8 +33,8 @@ OPTIONS: dict[str, Any] = {
 class ForRllib(gym.vector.VectorWrapper):
     """Native environments in the form that RLlib's networks expect.
 
-    Images are scaled to 0 to 1, rewards to about 1. RLlib gives runner *w* the seed *s* + *w*; the environments of a
-    runner draw their worlds under seeds spread from it, so that no two runners share worlds.
+    Images are scaled to 0 to 1, and rewards to about 1. RLlib gives runner *w* the seed *s* + *w*; seeds for its
+    environments are spread from it, so that no two runners share worlds.
     """
 
     def __init__(self, env: gym.vector.VectorEnv) -> None:
@@ -106,7 +106,7 @@ def main() -> None:
     if arguments.address is not None:
         ray.init(address=arguments.address, log_to_driver=False, logging_level=logging.ERROR)
     else:
-        # Runners and the learner take turns: one processor for each runner is enough, though Ray asks for one more.
+        # Runners and learner take turns, so one processor for each runner is enough; Ray asks for one more.
         ray.init(
             "local",
             num_cpus=arguments.runners + 1,

@@ -4,13 +4,13 @@
     python examples/python/text_maps.py grid.txt --of minigrid -o world.json
 
 DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` a possible start of the agent, `G` a goal of 10 points
-that ends the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are
-3.125 m wide, as in DeepMind Lab. A variations layer after an empty line is ignored: it only affects the look of rooms.
+that ends the episode, `A` an apple of 1 point, and `I` and `H` doors, which open when the agent touches them. Cells are
+3.125 m wide, as in DeepMind Lab. A variations layer after an empty line is ignored: it only affects how rooms look.
 
 MiniGrid: the output of `env.unwrapped.pprint_grid()`, two characters per cell, of which the second is its colour. `W` is a wall, `F`
 and two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key,
-`A` a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<`
-and `^^` are the agent. It carries one object at a time. Cells are 2 m wide.
+`A` a ball, `B` a box, `D` a closed door, `L` a door unlocked by a key of its colour, `__` an open door; `>>`, `VV`,
+`<<` and `^^` are the agent. It carries one object at a time. Cells are 2 m wide.
 
 Unknown characters are read as floor and reported on standard error with line and column. Needs no packages.
 """
@@ -43,17 +43,17 @@ class Map:
         self.unknown: dict[str, list[tuple[int, int]]] = {}
 
     def warn(self, place: str, text: str) -> None:
-        """Reports something that could not be converted unchanged."""
+        """Prints a warning about something that the world lacks or changes."""
         print(f"warning: {self.name}{place}: {text}", file=sys.stderr)
 
     def put(self, letter: str, thing: dict[str, Any], at: tuple[int, int]) -> str:
-        """Adds an object; returns its group's letter, a new one if the given letter is taken by a different group."""
+        """Adds an object; returns the letter of its group, which is a new one if another group uses the given letter."""
         group = {"group": thing["tag"]}
         self.objects.append((thing, at))
         letters = [letter, letter.lower(), *"123456789"]
-        own = next((one for one in letters if self.legend.get(one, group) == group), letter)
-        self.legend[own] = group
-        return own
+        free = next((one for one in letters if self.legend.get(one, group) == group), letter)
+        self.legend[free] = group
+        return free
 
     def put_door(self, letter: str, door: dict[str, Any], color: str | None, at: tuple[int, int]) -> str:
         """Adds a door in a doorway; returns its letter."""
@@ -63,32 +63,32 @@ class Map:
         return letter
 
     def floor_for_unknown(self, what: str, place: tuple[int, int]) -> str:
-        """Records an unknown character, and returns floor."""
+        """Records an unknown character, and returns the letter for floor."""
         self.unknown.setdefault(what, []).append(place)
         return FLOOR
 
     def place(self, at: tuple[int, int]) -> list[float]:
-        """The middle of a cell in metres."""
+        """The centre of a cell in metres."""
         columns, rows = len(self.rows[0]), len(self.rows)
         return [(at[0] + 0.5 - columns / 2) * self.cell, (rows / 2 - 0.5 - at[1]) * self.cell]
 
     def is_open(self, column: int, row: int) -> bool:
-        """Whether a cell lies on the map and is not a wall."""
+        """Whether a cell is on the map and not a wall."""
         return 0 <= row < len(self.rows) and 0 <= column < len(self.rows[0]) and self.rows[row][column] not in "#*"
 
     def start(self) -> tuple[tuple[int, int], float] | None:
-        """Where the agent starts: at the first marked position, else in the first free cell."""
+        """The agent's start: the first marked position, else the first free cell; `None` if no cell is free."""
         if self.starts:
             if len(self.starts) > 1:
                 self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
             return self.starts[0]
         self.warn("", "nothing says where the agent starts; it starts in the first free cell")
-        taken = {at for _, at in [*self.objects, *self.doors]} | set(self.lava)
+        occupied = {at for _, at in [*self.objects, *self.doors]} | set(self.lava)
         cells = ((column, row) for row in range(len(self.rows)) for column in range(len(self.rows[0])))
-        return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in taken), None)
+        return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in occupied), None)
 
     def zones(self) -> list[dict[str, Any]]:
-        """Zones of lava: one for each run of adjacent cells in a row."""
+        """The zones of lava: one for each run of adjacent cells in a row."""
         runs: list[list[tuple[int, int]]] = []
         for column, row in self.lava:
             if runs and runs[-1][-1] == (column - 1, row):
@@ -104,7 +104,7 @@ class Map:
         return zones
 
     def door(self, door: dict[str, Any], at: tuple[int, int]) -> dict[str, Any]:
-        """A door across its doorway; the passage runs along the axis with more open neighbours."""
+        """A door across its doorway. The passage runs along the axis with more open neighbours."""
         column, row = at
         along_x = self.is_open(column - 1, row) + self.is_open(column + 1, row)
         along_y = self.is_open(column, row - 1) + self.is_open(column, row + 1)
@@ -157,12 +157,12 @@ def pays(reward: float) -> dict[str, Any]:
 
 def variations(lines: list[str]) -> int:
     """Index of the first line of the variations layer, or the number of lines if there is none. The layer follows an empty
-    line, has as many lines as the entity layer, and contains no walls.
+    line, has as many lines as the entity layer, and contains only capital letters, dots and spaces.
     """
-    texts = [number for number, line in enumerate(lines) if line]
-    first = texts[0] if texts else 0
+    nonempty = [number for number, line in enumerate(lines) if line]
+    first = nonempty[0] if nonempty else 0
     empty = next((number for number in range(first, len(lines)) if not lines[number]), len(lines))
-    rest = [number for number in texts if number > empty]
+    rest = [number for number in nonempty if number > empty]
     allowed = set(string.ascii_uppercase + ". ")
     is_layer = rest and len(rest) == empty - first and all(set(lines[number]) <= allowed for number in rest)
     return rest[0] if is_layer else len(lines)
@@ -170,34 +170,34 @@ def variations(lines: list[str]) -> int:
 
 def dmlab(name: str, text: str) -> dict[str, Any]:
     """The world of a DeepMind Lab text level, from its entity layer."""
-    found, lines = Map(name, 3.125), text.splitlines()
+    level, lines = Map(name, 3.125), text.splitlines()
     end = variations(lines)
     if end < len(lines):
-        found.warn(f":{end + 1}:1", "the variations layer is left out: it says how rooms look")
+        level.warn(f":{end + 1}:1", "the variations layer is left out: it says how rooms look")
     for number, line in enumerate(lines[:end]):
         if not line:
             continue
         row: list[str] = []
         for column, letter in enumerate(line):
-            at, place, own = (column, len(found.rows)), (number + 1, column + 1), letter
+            at, place, kept = (column, len(level.rows)), (number + 1, column + 1), letter
             if letter == "P":
-                found.starts.append((at, 0.0))
+                level.starts.append((at, 0.0))
             elif letter == "G":
-                found.put(letter, {**thing("geometric", "gold", "goal"), **pays(10.0)}, at)
+                level.put(letter, {**thing("geometric", "gold", "goal"), **pays(10.0)}, at)
             elif letter == "A":
-                found.put(letter, {**thing("icosphere", "limegreen", "apple"), **pays(1.0), "scale": 0.5}, at)
+                level.put(letter, {**thing("icosphere", "limegreen", "apple"), **pays(1.0), "scale": 0.5}, at)
             elif letter in "IH":
-                found.put_door(letter, {"opens_on": ["AgentCollide"]}, None, at)
+                level.put_door(letter, {"opens_on": ["AgentCollide"]}, None, at)
             elif letter not in "* ":
-                own = found.floor_for_unknown(f"the letter {letter!r}", place)
-            row.append(own)
-        found.rows.append(row)
-    return found.world("a letter for each cell, such as * for a wall, P for the start, G for a goal")
+                kept = level.floor_for_unknown(f"the letter {letter!r}", place)
+            row.append(kept)
+        level.rows.append(row)
+    return level.world("a letter for each cell, such as * for a wall, P for the start, G for a goal")
 
 
 def minigrid(name: str, text: str) -> dict[str, Any]:
     """The world of a MiniGrid grid."""
-    found = Map(name, 2.0)
+    level = Map(name, 2.0)
     for number, line in enumerate(text.splitlines()):
         shown = line.strip()
         # The environment's name may precede the grid, which has no lower-case letters.
@@ -205,37 +205,37 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
             continue
         # Trailing spaces may have been stripped.
         pairs = [line[column : column + 2].ljust(2) for column in range(0, len(line), 2)]
-        row = len(found.rows)
-        cells = [cell_of_minigrid(found, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]
-        found.rows.append(cells)
-    return found.world("two characters for each cell, such as WG for a wall, >> for the agent, GG for a goal")
+        row = len(level.rows)
+        cells = [cell_of_minigrid(level, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]
+        level.rows.append(cells)
+    return level.world("two characters for each cell, such as WG for a wall, >> for the agent, GG for a goal")
 
 
-def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
+def cell_of_minigrid(level: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
     """The layout letter for two characters; also adds the object there."""
     what, color = pair[0], COLORS.get(pair[1])
     toggled = {"closes_on": ["AgentInteract"]}
     if pair in HEADINGS:
-        found.starts.append((at, HEADINGS[pair]))
+        level.starts.append((at, HEADINGS[pair]))
         return "A"
     if pair == "__":
-        return found.put_door("D", {**toggled, "open": True}, None, at)
+        return level.put_door("D", {**toggled, "open": True}, None, at)
     if pair == "  " or what in "WF":
         return "#" if what == "W" else FLOOR
     if color is None or what not in "VDLGKAB":
-        return found.floor_for_unknown(f'"{pair}"', place)
+        return level.floor_for_unknown(f'"{pair}"', place)
     if what == "V":
-        found.lava.append(at)
-        found.legend["V"] = "floor"
+        level.lava.append(at)
+        level.legend["V"] = "floor"
         return "V"
     if what in "DL":
         lock = {"key": f"{color}_key"} if what == "L" else {}
-        return found.put_door("D", {**toggled, **lock}, color, at)
+        return level.put_door("D", {**toggled, **lock}, color, at)
     if what == "G":
-        return found.put("G", {**thing("geometric", color, "goal"), **pays(1.0)}, at)
+        return level.put("G", {**thing("geometric", color, "goal"), **pays(1.0)}, at)
     kind, group = {"K": ("key", f"{color}_key"), "A": ("icosphere", "ball"), "B": ("cube", "box")}[what]
     # In a layout, `A` is the agent.
-    return found.put("O" if what == "A" else what, {**thing(kind, color, group), "portable": {}}, at)
+    return level.put("O" if what == "A" else what, {**thing(kind, color, group), "portable": {}}, at)
 
 
 READERS = {"dmlab": dmlab, "minigrid": minigrid}

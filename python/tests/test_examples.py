@@ -1,4 +1,6 @@
-"""The Python examples run, keep their claims, and have reproducible results. Learning success is not tested."""
+"""The Python examples run, have the properties that they claim, and have reproducible results. Learning success is not
+tested.
+"""
 
 from __future__ import annotations
 
@@ -71,11 +73,11 @@ def test_index_matches_the_first_line_of_each_example() -> None:
 
 @pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
 def test_result_names_worlds_that_are_still_drawn(config: Path) -> None:
-    said = json.loads(config.read_text(encoding="utf-8"))
-    assert said["command"].startswith("python examples/python/")
-    assert said["worlds"]
+    recorded = json.loads(config.read_text(encoding="utf-8"))
+    assert recorded["command"].startswith("python examples/python/")
+    assert recorded["worlds"]
     other = []
-    for name, hashes in said["worlds"].items():
+    for name, hashes in recorded["worlds"].items():
         path = name if name.partition("#")[0] in _native.built_in_names() else str(FOLDER.parents[1] / name)
         env = gymnasium.make("driftworld/Task-v0", task=path)
         if _native.load_variant(path).hash != hashes["variant"]:
@@ -84,7 +86,7 @@ def test_result_names_worlds_that_are_still_drawn(config: Path) -> None:
             if env.reset(seed=int(seed))[1]["world_hash"] != world_hash:
                 other.append(f"{name} under seed {seed}")
         env.close()
-    if "outdated" in said:
+    if "outdated" in recorded:
         # Results from older worlds are marked as such, also on their page, until measured again.
         assert other
         assert "Measured before" in (config.parent / "README.md").read_text(encoding="utf-8")
@@ -95,8 +97,8 @@ def test_result_names_worlds_that_are_still_drawn(config: Path) -> None:
 @pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
 def test_result_has_page_curve_and_figure(config: Path) -> None:
     page = (config.parent / "README.md").read_text(encoding="utf-8")
-    said = json.loads(config.read_text(encoding="utf-8"))
-    assert said["command"] in page
+    recorded = json.loads(config.read_text(encoding="utf-8"))
+    assert recorded["command"] in page
     assert (config.parent / "curve.csv").read_text(encoding="utf-8").count("\n") > 3
     assert (config.parent / "curve.png").read_bytes().startswith(b"\x89PNG")
 
@@ -112,7 +114,7 @@ def test_notebook_runs_as_a_program(notebook: Path, tmp_path: Path) -> None:
 @learners
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
 def test_notebook_is_valid_jupytext(notebook: Path) -> None:
-    jupytext = pytest.importorskip("jupytext", reason="it is what makes notebooks of scripts")
+    jupytext = pytest.importorskip("jupytext", reason="converts scripts to notebooks")
     kinds = [cell.cell_type for cell in jupytext.read(notebook).cells]
     assert kinds.count("code") >= 5
     assert kinds.count("markdown") >= 5
@@ -124,11 +126,11 @@ def test_learner_runs_and_writes_its_result(name: str, tmp_path: Path) -> None:
     pytest.importorskip("torch", reason="the learners are networks")
     pytest.importorskip("matplotlib", reason="results have a figure")
     if name == "ppo_find_objects":
-        pytest.importorskip("stable_baselines3", reason="its PPO is what learns")
+        pytest.importorskip("stable_baselines3", reason="the example uses its PPO")
     run(FOLDER / f"{name}.py", "--quick", "--results", str(tmp_path / "result"), cwd=tmp_path)
-    said = json.loads((tmp_path / "result" / "config.json").read_text(encoding="utf-8"))
-    assert {"command", "settings", "versions", "machine", "seconds", "worlds"} <= said.keys()
-    assert str(tmp_path) not in json.dumps(said), "a result is the same wherever it is written to"
+    recorded = json.loads((tmp_path / "result" / "config.json").read_text(encoding="utf-8"))
+    assert {"command", "settings", "versions", "machine", "seconds", "worlds"} <= recorded.keys()
+    assert str(tmp_path) not in json.dumps(recorded), "a result is the same wherever it is written to"
     assert (tmp_path / "result" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -136,28 +138,28 @@ def test_learner_runs_and_writes_its_result(name: str, tmp_path: Path) -> None:
 def test_replay_is_compared_without_running_anything_twice(tmp_path: Path) -> None:
     pytest.importorskip("torch", reason="the learners are networks")
     first = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
-    assert "not lived again" not in first
+    assert "not run again" not in first
     assert "perf_maintenance_mrlep" in first
     assert (tmp_path / "logs" / "two_skies" / "replay_ppo.html").exists()
     second = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
     # Two experts of each of the two learners, and the two lifetimes.
-    assert second.count("not lived again") == 6
+    assert second.count("not run again") == 6
     assert second.splitlines()[-10:] == first.splitlines()[-10:]
 
 
 @learners
 def test_rllib_learns_on_several_runners(tmp_path: Path) -> None:
-    pytest.importorskip("ray.rllib", reason="it is what learns")
+    pytest.importorskip("ray.rllib", reason="the example needs it")
     assert "steps  reward" in run(FOLDER / "rllib_ppo.py", "--quick", cwd=tmp_path)
 
 
 @learners
 def test_ray_results_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
-    pytest.importorskip("ray.data", reason="it is what shares the work out")
+    pytest.importorskip("ray.data", reason="the example needs it")
     answers = []
     for workers in ("1", "2"):
-        told = run(FOLDER / "ray_sample_and_measure.py", "--quick", "--workers", workers, cwd=tmp_path)
-        answers.append(json.loads(told[: told.rindex("}") + 1]))
+        output = run(FOLDER / "ray_sample_and_measure.py", "--quick", "--workers", workers, cwd=tmp_path)
+        answers.append(json.loads(output[: output.rindex("}") + 1]))
     assert answers[0] == answers[1]
     assert answers[0]["variants"] == 60
     assert sum(answers[0]["distance"]["histogram"]) == 60
@@ -171,13 +173,11 @@ def one_environment(**columns: list[Any]) -> dict[str, Any]:
 
 
 def arguments_of_a_lifetime(**changes: Any) -> argparse.Namespace:
-    """Arguments for a few experiences of the examples' curriculum; its second evaluation uses different worlds from the
-    first block's.
-    """
+    """Arguments for a few experiences of the examples' curriculum."""
     return argparse.Namespace(**{"learn": 12, "evaluate": 4, "num_envs": 4, "again": True, "policy": "sampled", **changes})
 
 
-def lived(folder: Path, learner: Any, order: tuple[str, ...], **changes: Any) -> tuple[Any, dict[str, list[Any]]]:
+def run_example(folder: Path, learner: Any, order: tuple[str, ...], **changes: Any) -> tuple[Any, dict[str, list[Any]]]:
     """Runs a learner through the examples' curriculum; returns the learner, and rewards and kinds from its log."""
     module = load("experts_and_sequential_ppo")
     arguments = arguments_of_a_lifetime(**changes)
@@ -193,13 +193,13 @@ def test_number_of_evaluations_does_not_change_learning(name: str, tmp_path: Pat
     torch = pytest.importorskip("torch", reason="the learners are networks")
     torch.set_num_threads(1)
     make = getattr(load("experts_and_sequential_ppo"), name, None) or getattr(load("replay_ppo"), name)
-    ways: dict[str, dict[str, Any]] = {
+    settings: dict[str, dict[str, Any]] = {
         "often": {}, "more": {"evaluate": 9}, "never": {"evaluated": ()}, "greedy": {"policy": "greedy"},
     }  # fmt: skip
     learned, networks = [], []
-    for way, changes in ways.items():
+    for kind, changes in settings.items():
         learner = make(3, 4, changes.get("policy", "sampled"), length=32)
-        learner, log = lived(tmp_path / way, learner, ("day", "evening"), **changes)
+        learner, log = run_example(tmp_path / kind, learner, ("day", "evening"), **changes)
         learned.append([row for kind, row in zip(log["block_type"], log["reward"], strict=True) if kind == "train"])
         networks.append(torch.cat([parameter.flatten() for parameter in learner.network.parameters()]))
         assert learner.updates > 0
@@ -213,9 +213,9 @@ def test_lifetime_starts_like_its_expert_and_replay_takes_as_many_steps(tmp_path
     torch = pytest.importorskip("torch", reason="the learners are networks")
     torch.set_num_threads(1)
     sequential, replay = load("experts_and_sequential_ppo").Learner, load("replay_ppo").ReplayLearner
-    expert, first = lived(tmp_path / "expert", sequential(3, 4, length=32), ("day",), evaluated=("day",))
-    lifetime, whole = lived(tmp_path / "lifetime", sequential(3, 4, length=32), ("day", "evening"))
-    rehearsing, _ = lived(tmp_path / "replay", replay(3, 4, length=32), ("day", "evening"))
+    expert, first = run_example(tmp_path / "expert", sequential(3, 4, length=32), ("day",), evaluated=("day",))
+    lifetime, whole = run_example(tmp_path / "lifetime", sequential(3, 4, length=32), ("day", "evening"))
+    rehearsing, _ = run_example(tmp_path / "replay", replay(3, 4, length=32), ("day", "evening"))
 
     def block(log: dict[str, list[Any]]) -> list[Any]:
         rows = zip(log["block_type"], log["task_name"], log["reward"], log["episode_step_count"], strict=True)
@@ -234,7 +234,7 @@ def test_saved_learner_continues_unchanged(tmp_path: Path) -> None:
     torch.set_num_threads(1)
     load("experts_and_sequential_ppo")
     make = load("replay_ppo").ReplayLearner
-    learner, _ = lived(tmp_path / "log", make(3, 4, length=32), ("day",))
+    learner, _ = run_example(tmp_path / "log", make(3, 4, length=32), ("day",))
     learner.save(tmp_path / "kept")
     again = make(4, 4, length=32)
     again.load(tmp_path / "kept")

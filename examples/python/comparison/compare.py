@@ -1,14 +1,14 @@
-"""Compares MiniGrid, MiniWorld, ViZDoom, JAXenstein and Driftworld under one PPO: installs, runs them, and writes docs/comparison.md.
+"""Compares MiniGrid, MiniWorld, ViZDoom, JAXenstein and Driftworld with the same PPO, and writes docs/comparison.md.
 
-    python examples/python/comparison/compare.py all WHEEL       # everything below; resumes an earlier call
+    python examples/python/comparison/compare.py all WHEEL       # everything below; resumes an interrupted call
     python examples/python/comparison/compare.py install WHEEL   # a Python environment for each system
-    python examples/python/comparison/compare.py run             # three seeds of each task, except those with a log
-    python examples/python/comparison/compare.py speed           # steps a second without a learner, the systems in turn
-    python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; --check compares it
+    python examples/python/comparison/compare.py run             # three seeds of each task, except runs that have a log
+    python examples/python/comparison/compare.py speed           # steps a second without a learner; the systems take turns
+    python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; --check only compares it
 
 `scripts/dist.sh` makes WHEEL. Needs Python 3.10 or later and Linux; MiniWorld needs Mesa (Debian: libegl-mesa0
-libgl1-mesa-dri libglu1-mesa). JAXenstein is not in any registry: pass a checkout of its repository with --jaxenstein
-CHECKOUT before the command, or it is left out.
+libgl1-mesa-dri libglu1-mesa). JAXenstein is in no package registry: it is left out unless --jaxenstein CHECKOUT, before the
+command, names a checkout of its repository.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ LOGS, PAGE = HERE / "logs", ROOT / "docs/comparison.md"
 SYSTEMS = ["minigrid", "miniworld", "vizdoom", "jaxenstein", "driftworld"]
 SEEDS = range(3)
 NUMBERS = ["no", "one", "two", "three", "four", "five"]
-#: A task counts as learned at this share of successes among this many last episodes.
+#: A task counts as learned when the share of successes in the last `WINDOW` episodes reaches `SCORE`.
 SCORE, WINDOW = 0.8, 100
 
 
@@ -54,7 +54,7 @@ class Systems:
             raise SystemExit(f"--jaxenstein: found no jaxenstein/__init__.py in {checkout}, expected a checkout of JAXenstein's repository")
         self.names = [name for name in SYSTEMS if checkout or name != "jaxenstein"]
 
-    def asked(self, kinds: list[str], only: list[str]) -> dict[str, str]:
+    def requested(self, kinds: list[str], only: list[str]) -> dict[str, str]:
         """The requested tasks (and rates) of the available systems, each with its system."""
         found = {name: task["system"] for kind in kinds for name, task in tasks()[kind].items() if not only or name in only}
         left = [name for name, system in found.items() if system not in self.names]
@@ -76,18 +76,18 @@ class Systems:
 
 
 def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], keep: bool) -> None:
-    """Creates environments, and records how long each took and how large it is.
+    """Creates environments, and records the seconds that each took and its size.
 
-    ``torch`` is a folder of packages with torch. ``keep`` keeps existing environments, and installs the wheel in
-    Driftworld's.
+    ``torch`` is a folder of packages that contains torch. With ``keep``, existing environments are kept, and only the
+    wheel is installed again.
     """
     record = LOGS / "install.json"
     found = json.loads(record.read_text(encoding="utf-8")) if record.is_file() else {}
     for system in only or [*systems.names, *([] if torch else ["learner"])]:
         folder = systems.envs / system
         pip = [str(folder / "bin/python"), "-m", "pip", "install", "--quiet", "--no-cache-dir", "--disable-pip-version-check"]
-        whole = own_packages(folder) / "zz_learner.pth"
-        if keep and whole.is_file():
+        path_file = own_packages(folder) / "zz_learner.pth"
+        if keep and path_file.is_file():
             if system == "driftworld":
                 subprocess.run([*pip, "--force-reinstall", "--no-deps", str(wheel)], check=True)
             continue
@@ -95,14 +95,14 @@ def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], 
         subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
         before = size(folder)
         what = ["-r", str(HERE / f"requirements/{system}.txt"), *([str(wheel)] if system == "driftworld" else [])]
-        began = time.perf_counter()
+        start = time.perf_counter()
         subprocess.run([*pip, *what], check=True)
-        seconds = time.perf_counter() - began
+        seconds = time.perf_counter() - start
         found[system] = {"seconds": round(seconds, 1), "megabytes": round((size(folder) - before) / 1e6), "load": round(os.getloadavg()[0], 1)}
         print(system, found[system], flush=True)
-        # Searched after the system's own packages, whose versions take precedence.
+        # Python searches these folders after the system's own packages, so the system's versions take precedence.
         others = [torch or own_packages(systems.envs / "learner"), own_packages(systems.envs / "driftworld")]
-        whole.write_text("".join(f"{each}\n" for each in others if system != "learner" and each != whole.parent), encoding="utf-8")
+        path_file.write_text("".join(f"{each}\n" for each in others if system != "learner" and each != path_file.parent), encoding="utf-8")
     write(record, json.dumps({system: found[system] for system in SYSTEMS if system in found}, indent=1) + "\n")
 
 
@@ -118,18 +118,18 @@ def size(folder: Path) -> int:
 
 def run(systems: Systems, cores: list[int], seeds: range, only: list[str], decisions: int | None, anew: bool) -> None:
     """Runs all seeds of all tasks that have no log, one at a time on each core."""
-    asked = systems.asked(["tasks"], only)
-    for log in [log_of(name, seed) for seed in seeds for name in asked if anew]:
+    requested = systems.requested(["tasks"], only)
+    for log in [log_of(name, seed) for seed in seeds for name in requested if anew]:
         log.unlink(missing_ok=True)
-    left = [(name, seed) for seed in seeds for name in asked if not log_of(name, seed).is_file()]
+    left = [(name, seed) for seed in seeds for name in requested if not log_of(name, seed).is_file()]
 
     def one(core: int) -> None:
         while left:
             name, seed = left.pop(0)
-            began = time.perf_counter()
+            start = time.perf_counter()
             rest = [str(decisions)] if decisions else []
-            systems.python(asked[name], core, "learn", name, str(seed), str(log_of(name, seed)), *rest)
-            print(f"{name}, seed {seed}: {time.perf_counter() - began:.0f} s", flush=True)
+            systems.python(requested[name], core, "learn", name, str(seed), str(log_of(name, seed)), *rest)
+            print(f"{name}, seed {seed}: {time.perf_counter() - start:.0f} s", flush=True)
 
     with ThreadPoolExecutor(len(cores)) as pool:
         try:
@@ -140,15 +140,15 @@ def run(systems: Systems, cores: list[int], seeds: range, only: list[str], decis
 
 
 def speed(systems: Systems, core: int, repeats: int, seconds: float, only: list[str], anew: bool) -> None:
-    """Measures rates without a learner, the systems in turn, so that a busy moment affects all of them. Keeps complete
-    repeats.
+    """Measures rates without a learner. The systems take turns, so that a busy moment affects all of them. Complete
+    repeats are kept.
     """
-    path, asked = LOGS / "speed.jsonl", systems.asked(["tasks", "rates"], only)
-    old = [row for row in read(path) if not (anew and row["task"] in asked)] if path.is_file() else []
+    path, requested = LOGS / "speed.jsonl", systems.requested(["tasks", "rates"], only)
+    old = [row for row in read(path) if not (anew and row["task"] in requested)] if path.is_file() else []
     for repeat in range(repeats):
         rows = [row for row in old if row["repeat"] == repeat]
-        if not asked.keys() <= {row["task"] for row in rows}:
-            for name, system in asked.items():
+        if not requested.keys() <= {row["task"] for row in rows}:
+            for name, system in requested.items():
                 printed = systems.python(system, core, "speed", name, str(seconds))
                 rows = [row for row in rows if row["task"] != name] + [{"repeat": repeat, **json.loads(printed.splitlines()[-1])}]
                 print(json.dumps(rows[-1]), flush=True)
@@ -212,13 +212,13 @@ def versions(systems: dict[str, str]) -> list[str]:
     return [f"{systems[key]} {own[0]}" for key, own in found.items() if own]
 
 
-def listed(names: list[str]) -> str:
+def joined(names: list[str]) -> str:
     """Names joined as in a sentence."""
     return " and ".join([", ".join(names[:-1]), names[-1]])
 
 
 def spread(values: list[float], form: str) -> str:
-    """The minimum and maximum of some numbers, or a single number if they are formatted alike."""
+    """The minimum and maximum of some numbers, or one number if both look the same."""
     ends = [format(each, form) for each in (min(values), max(values))]
     return ends[0] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
 
@@ -230,7 +230,7 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def rounded(rate: float) -> str:
-    """A rate rounded to two digits: further digits are not reproducible."""
+    """A rate rounded to two digits, because further digits are not reproducible."""
     digits = len(str(int(rate))) - 2
     return f"{round(rate, -digits):,.0f}"
 
@@ -280,7 +280,7 @@ def page() -> str:
     commits = [f"JAXenstein at commit {each}" for each in sorted({head["commit"] for head in heads if "commit" in head})]
     shown = {named["tasks"][name]["system"] for name in runs}
     texts = {
-        "count": NUMBERS[len(shown)], "names": listed([label for key, label in named["systems"].items() if key in shown]),
+        "count": NUMBERS[len(shown)], "names": joined([label for key, label in named["systems"].items() if key in shown]),
         "benchmarks": "[Benchmarks](benchmarks.md)",  # A link relative to docs/, where the template is not.
         "compiled": f"in {spread(compiled, '.1f')} seconds of the processor" if compiled else "not measured here",
         "unfinished": f"**Not finished**: of {len(SEEDS)} seeds these are missing: {unfinished}. `compare.py run` runs them. " * bool(unfinished),

@@ -55,7 +55,7 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
     for env in range(NUM_ENVS):
         learner.begin(env, None, seed)
     learner.freeze(False)
-    said = {
+    header = {
         "task": name, "name": task.name, "seed": seed, "decisions": decisions, "size": SIZE, "num_envs": NUM_ENVS,
         "actions": learner.num_actions, "frames": task.frames, "settings": {key: getattr(settings, key) for key in settings.__slots__},
         "versions": {each: importlib.metadata.version(each) for each in ("torch", "gymnasium", "numpy", "driftworld")},
@@ -65,9 +65,9 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
     partial.parent.mkdir(parents=True, exist_ok=True)
     ended = np.zeros(NUM_ENVS, dtype=bool)
     outcomes, in_envs, steps = "", 0.0, 0
-    began, began_processor = time.perf_counter(), processor_seconds()
+    start, start_processor = time.perf_counter(), processor_seconds()
     with partial.open("w", encoding="utf-8") as file:
-        print(json.dumps(said), file=file)
+        print(json.dumps(header), file=file)
         while learner.decisions < decisions:
             actions = learner.act(observations, infos)
             before = time.perf_counter()
@@ -79,8 +79,8 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
             observations, steps = following, steps + 1
             if steps % ROLLOUT == 0:
                 row = {
-                    "decisions": learner.decisions, "wall": round(time.perf_counter() - began, 2),
-                    "processor": round(processor_seconds() - began_processor, 2), "in_envs": round(in_envs, 2),
+                    "decisions": learner.decisions, "wall": round(time.perf_counter() - start, 2),
+                    "processor": round(processor_seconds() - start_processor, 2), "in_envs": round(in_envs, 2),
                     "load": round(os.getloadavg()[0], 1), "episodes": outcomes,
                 }  # fmt: skip
                 print(json.dumps(row), file=file, flush=True)
@@ -95,11 +95,11 @@ def speed(name: str, seconds: float) -> None:
     """
     work, facts = (RATES[name](), {}) if name in RATES else random_actions(name)
     work()
-    count, processor, began, began_processor = 0, 0.0, time.perf_counter(), processor_seconds()
+    count, processor, start, start_processor = 0, 0.0, time.perf_counter(), processor_seconds()
     while processor < seconds:
         count += work()
-        processor = processor_seconds() - began_processor
-    found = {"task": name, "decisions": count, "wall": round(time.perf_counter() - began, 2), "processor": round(processor, 2)}
+        processor = processor_seconds() - start_processor
+    found = {"task": name, "decisions": count, "wall": round(time.perf_counter() - start, 2), "processor": round(processor, 2)}
     print(json.dumps({**found, "load": round(os.getloadavg()[0], 1), **facts}))
 
 

@@ -1,4 +1,4 @@
-"""The tasks of the comparison as vector environments of one shape: images ``(num_envs, size, size, 3)`` and a few
+"""The tasks of the comparison, as vector environments with images ``(num_envs, size, size, 3)`` and a few discrete
 actions.
 
 Each function imports only its own system, since each system is installed in a separate environment.
@@ -42,9 +42,7 @@ class Task:
 
 
 def minigrid(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
-    """MiniGrid's partial view as an image: 7 × 7 tiles, with a black border where they do not fill it. Has all seven
-    actions.
-    """
+    """MiniGrid's partial view as an image of 7 × 7 tiles, with a black border beyond them, and all seven actions."""
     import minigrid  # noqa: F401
     from minigrid.wrappers import ImgObsWrapper, RGBImgPartialObsWrapper
 
@@ -60,7 +58,7 @@ def minigrid(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
 
 
 def miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
-    """MiniWorld without a display: OpenGL through EGL."""
+    """MiniWorld without a display, with OpenGL through EGL."""
     import pyglet
 
     pyglet.options["headless"] = True
@@ -86,16 +84,16 @@ class Doom(gym.Env[Any, Any]):
         if seed is not None:
             self.game.set_seed(seed)
         self.game.new_episode()
-        return self._seen(), {}
+        return self._image(), {}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Presses a button for 4 tics. At the end of an episode there is no new image: the previous one is returned."""
+        """Presses a button for 4 tics. The end of an episode has no new image, so the previous one is returned."""
         reward = self.game.make_action(self.rows[int(action)], 4)
         ended = self.game.is_episode_finished()
         success = ended and reward > self.pays / 2
-        return self._seen(), reward, success, ended and not success, {}
+        return self._image(), reward, success, ended and not success, {}
 
-    def _seen(self) -> Any:
+    def _image(self) -> Any:
         state = self.game.get_state()
         if state is not None:
             self.picture = state.screen_buffer[self.picks]
@@ -123,12 +121,12 @@ def doom(scenario: str, buttons: list[str], depth_and_labels: bool = False) -> A
 
 
 def vizdoom(scenario: str, buttons: str, pays: float) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:
-    """One engine, which is a process of its own, for each environment."""
+    """One engine for each environment; each engine is a separate process."""
     return lambda num_envs, size: SyncVectorEnv([lambda: Doom(scenario, buttons.split(), pays, size)] * num_envs)
 
 
-#: Start positions and the goal are those of MiniGrid's room (more goals would cost JAXenstein time to draw); size,
-#: steps, turns, step limit and touch distance are those of MiniWorld's, with cells of 1 m.
+#: Start positions and goal are as in MiniGrid's room (more goals would slow down JAXenstein's rendering); size, steps,
+#: turns, step limit and touch distance are as in MiniWorld's room, with cells of 1 m.
 ROOM = "\n".join(["#" * 8, *["#SSSSSS#"] * 5, "#SSSSSG#", "#" * 8])
 ROOM_TURN, ROOM_STEP, ROOM_TOUCH, ROOM_LIMIT, ROOM_ACTIONS = np.pi / 4, 0.7, 0.97, 50, 3
 
@@ -136,11 +134,11 @@ ROOM_TURN, ROOM_STEP, ROOM_TOUCH, ROOM_LIMIT, ROOM_ACTIONS = np.pi / 4, 0.7, 0.9
 class Jaxenstein(VectorEnv[Any, Any, Any]):
     """A JAXenstein maze, batched by ``vmap``: one call of a compiled function steps all environments.
 
-    As in ``SyncVectorEnv``, the step after an episode's last starts the next one. Only the returned image is rendered.
+    As in ``SyncVectorEnv``, the step after the end of an episode starts the next one. Only returned images are rendered.
     """
 
     def __init__(self, maze: str, num_envs: int, size: int) -> None:
-        # One thread. XLA reads its flags at the first import.
+        # Restricts XLA to one thread; it reads the flags when it is first imported.
         os.environ |= {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"}
         import jax
         import jaxenstein
@@ -169,14 +167,14 @@ class Jaxenstein(VectorEnv[Any, Any, Any]):
             seen = jax.vmap(env.render)(states), jnp.where(ended, 0, rewards), terminated, done & ~terminated
             return (states, done, key), seen
 
-        # An ended environment starts a new episode, whatever its state was.
+        # An ended environment starts a new episode, so its state does not matter.
         shapes = jax.eval_shape(jax.vmap(env.reset), jax.random.split(jax.random.key(0), num_envs))[1]
         self.states = jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
         self.function, self.compiled = step, jax.jit(step)
-        began = time.process_time()
+        start = time.process_time()
         self.reset(seed=0)
         #: Facts for the log: processor seconds of the first call, in which XLA compiles, JAX's version, and the commit.
-        self.facts = {"compiling": round(time.process_time() - began, 2), "jax": jax.__version__, "commit": commit(jaxenstein)}
+        self.facts = {"compiling": round(time.process_time() - start, 2), "jax": jax.__version__, "commit": commit(jaxenstein)}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode in all environments."""
@@ -195,8 +193,8 @@ def commit(package: Any) -> str:
     clone = Path(package.__file__).parents[1] / ".git"
     if not clone.exists():
         return "unknown"
-    asked = ["git", "--git-dir", str(clone), "rev-parse", "--short=12", "HEAD"]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
+    command = ["git", "--git-dir", str(clone), "rev-parse", "--short=12", "HEAD"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def jaxenstein(maze: str) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:

@@ -13,8 +13,8 @@
 # %% [markdown]
 # # Author a task
 #
-# You write a task of your own as one document, look at its worlds, make a mistake on purpose, check what your variants change, and
-# teach a small network to solve it. It takes two minutes and no graphics card.
+# You write a task as one document, look at its worlds, make a mistake on purpose, check what your variants change, and train a small
+# network to solve it. This takes two minutes and no graphics card.
 #
 # Needs `pip install "./python[learners]" matplotlib`, or a wheel of Driftworld beside `pip install torch matplotlib`.
 
@@ -36,8 +36,8 @@ WORK = Path(tempfile.mkdtemp())
 # ## The document
 #
 # An orchard: red spheres are ripe and pay, green ones are unripe and cost. The world is a walled square of 16 m.
-# Everything that may differ between variants is a *parameter*, which says which element of the decision process it
-# touches: `R` is the reward, `O` the observations, `S` the states.
+# Everything that may differ between variants is a *parameter*, which declares the elements of the decision process that
+# it affects: `R` is the reward, `O` the observations, `S` the states.
 
 # %%
 orchard = {
@@ -76,7 +76,8 @@ print(task.name, task.variant_names())
 # %% [markdown]
 # ## A mistake
 #
-# A document is checked as a whole before anything runs. Each message says where, what was found, what was expected, and what to do.
+# A document is checked as a whole before anything runs. Each message states the position, what was found, what was expected, and what
+# to do.
 
 # %%
 wrong = json.loads(path.read_text(encoding="utf-8"))
@@ -111,7 +112,7 @@ plt.show()
 # %% [markdown]
 # ## How far apart are the variants?
 #
-# By parameters, 1 is one parameter moved over its whole range; so 0.4 is two fifths of one.
+# When measured by parameters, a distance of 1 is one parameter moved over its whole range, so 0.4 is two fifths of that.
 
 # %%
 matrix = driftworld.distance_matrix(task.variants)
@@ -119,7 +120,7 @@ print(matrix.labels, matrix.values.round(2), sep="\n")
 print(driftworld.distance(task.variant("day"), task.variant("swapped")).explain())
 
 # %% [markdown]
-# ## Does each change what it says?
+# ## Does each variant change what it declares?
 #
 # The document declares that `dusk` changes what is observed and nothing else. An experiment checks it: both worlds of a pair are run
 # side by side with the same actions. `phi` is the part of `O` that says how things look; *sound* means that the
@@ -136,9 +137,9 @@ def experiment(spec):
 experiment(task)
 
 # %% [markdown]
-# *Idle*: `swapped` makes no difference in any world, so the document has a mistake that no check of its keys can find. The
-# spheres have a reward, and nothing says *when* it is paid. Now it is paid once, when the agent touches a sphere, which
-# then vanishes.
+# *Idle* means that `swapped` makes no difference in any world, so the document has a mistake that no check of its keys can find:
+# the spheres have a reward, but nothing says *when* it is paid. The next cell pays it once, when the agent touches a sphere,
+# which then vanishes.
 
 # %%
 for group in orchard["groups"]:
@@ -150,8 +151,8 @@ experiment(task)
 # %% [markdown]
 # ## Can it be learned?
 #
-# A hundred thousand decisions of PPO on 32 × 32 pixels, with a test before and after, in 50 worlds that it never learns
-# from.
+# PPO learns from a hundred thousand decisions on 32 × 32 pixels, and is tested before and after in 50 worlds that it never
+# learns from.
 
 # %%
 ACTIONS = [[6, 0, 0], [6, 45, 0], [6, -45, 0], [2, 120, 0], [2, -120, 0]]  # m/s, degrees per second, interact
@@ -176,6 +177,6 @@ plt.show()
 # %% [markdown]
 # ## Your turn
 #
-# - `swapped` makes the green ones pay, too. Learn `day` first and `swapped` after it, as in the notebook `forgetting.py`.
+# - `swapped` makes the green spheres pay too. Learn `day` first and then `swapped`, as in the notebook `forgetting.py`.
 # - Draw a new number in every world: `"role": "randomized"` with a `distribution` (`docs/task-specs.md`).
 # - Add walls, doors, keys, things to carry: `docs/worlds.md` shows each in a few lines.

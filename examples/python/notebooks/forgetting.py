@@ -13,8 +13,8 @@
 # %% [markdown]
 # # See forgetting
 #
-# A network learns to turn left in a maze, then to turn right. Can it still turn left? In a minute or two you see it forget, you
-# try a method that is meant to prevent it, and you get the numbers that a paper would report.
+# A network learns to turn left in a maze, then to turn right. Can it still turn left? In a minute or two you see it forget, try a
+# method that is meant to prevent this, and get the numbers that a paper would report.
 #
 # Needs `pip install "./python[learners]" matplotlib`, or a wheel of Driftworld beside `pip install torch matplotlib`.
 
@@ -49,8 +49,7 @@ for axis, task in zip(axes, TASKS, strict=True):
 plt.show()
 
 # %% [markdown]
-# How far apart are they, and in what? The letters are the elements of the decision process: `R` is the reward, `O` the
-# observations.
+# How far apart are they, and in which elements of the decision process? `R` is the reward, `O` the observations.
 
 # %%
 print(driftworld.distance(*TASKS).explain())
@@ -58,8 +57,8 @@ print(driftworld.distance(*TASKS).explain())
 # %% [markdown]
 # ## One lifetime
 #
-# First 33,000 decisions of one task, then as many of the other. Before, between and after, the agent is tested in 40 worlds of
-# both, which it never learns from: *frozen*, so that the test changes nothing.
+# The agent learns from 33,000 decisions of one task, then from as many of the other. Before, between and after, it is tested in 40
+# worlds of both, which it never learns from. During tests it is *frozen*, so that they change nothing.
 
 
 # %%
@@ -78,7 +77,7 @@ curriculum = driftworld.Curriculum.from_dict({"version": 1, "name": "see_forgett
 # %% [markdown]
 # ## Two learners
 #
-# They have the same network, the same PPO and the same worlds. `FineTuning` just continues to learn. `CLEAR` keeps old
+# Both have the same network, the same PPO and the same worlds. `FineTuning` just continues to learn. `CLEAR` keeps old
 # steps and replays them (Rolnick et al. 2019).
 
 # %%
@@ -124,15 +123,15 @@ for name in learners:
     print(name, {task: [round(share, 2) for share in shares] for task, shares in successes(name).items()})
 
 # %% [markdown]
-# The blue line of `FineTuning` shows forgetting: it rises when *left* is learned and falls when *right* is. With
-# these settings `CLEAR` forgets as well. A method that helps in one sequence need not help in the next: that is why
-# you test it.
+# The blue line of `FineTuning` shows forgetting: it rises when *left* is learned and falls when *right* is learned.
+# With these settings `CLEAR` forgets as well. A method that helps in one sequence need not help in the next, so it has
+# to be tested.
 #
 # ## The numbers of a paper
 #
-# *Performance maintenance* below 0 is forgetting, *forward transfer* above 1 is one task helping the next. These
-# numbers come from one lifetime with one seed: enough to see an effect, not enough to claim one. `docs/metrics.md`
-# explains them, and says what to do about chance.
+# *Performance maintenance* below 0 means forgetting; *forward transfer* above 1 means that one task helps the next.
+# These numbers come from one lifetime with one seed, which is enough to see an effect but not to claim one.
+# `docs/metrics.md` explains them, and how to rule out chance.
 
 # %%
 for name in learners:
@@ -141,8 +140,8 @@ for name in learners:
 # %% [markdown]
 # ## Your turn
 #
-# - Why does rehearsal not help? Learn both tasks in one block: can this network solve them together at all?
-# - Swap `TASKS`, or take two variants of another family: `driftworld tasks` lists them.
+# - Why does rehearsal not help? Learn both tasks in one block, to see whether this network can solve them together at all.
+# - Swap `TASKS`, or use two variants of another family (`driftworld tasks` lists them).
 # - Write a method of your own: subclass `driftworld.learners.PPO` and override `extra_loss`; `driftworld benchmark new
 #   NAME` writes a file to start from.
-# - Make a page of it: `driftworld.report(LOGS / "FineTuning", "report.html")`.
+# - Write a report: `driftworld.report(LOGS / "FineTuning", "report.html")`.

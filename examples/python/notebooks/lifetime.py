@@ -11,12 +11,12 @@
 # ---
 
 # %% [markdown]
-# # A lifetime, lived and scored
+# # Run and score a lifetime
 #
-# Two small learners go through the same curriculum: by day blue cubes pay and red ones cost, in the evening it is the
-# other way round. One remembers what each colour is worth; the other remembers it for each sky. What does each retain,
-# and what do the metrics of lifelong learning show? This notebook shows the mechanics: with one lifetime each, 12
-# experiences a block and 6 evaluations, a difference between the two numbers of a row may be due to chance.
+# Two small learners go through the same curriculum: by day blue cubes pay and red ones cost; in the evening it is the
+# other way round. One learner remembers a value for each colour, the other a value for each colour and sky. What does
+# each retain, and what do the metrics of lifelong learning show? This notebook only shows the mechanics: with one
+# lifetime each, 12 experiences per block and 6 evaluations, a difference between the two may be due to chance.
 #
 # Needs `pip install "./python[pandas]" matplotlib`, and runs in seconds: these learners search for coloured pixels and
 # have no network. `../experts_and_sequential_ppo.py` does the same with a network.
@@ -39,7 +39,7 @@ LOGS = Path(tempfile.mkdtemp())
 
 # %%
 class Seeker:
-    """Walks towards the colour that it values most, away from one that costs, and learns values from touching
+    """Walks towards the colour that it values most and away from colours that cost, and learns values by touching
     objects.
     """
 
@@ -84,8 +84,8 @@ class Seeker:
 # %% [markdown]
 # ## A curriculum for both
 #
-# Two variants in turn, twice; everything is logged in the l2logger format, as by `driftworld run`. Each expert has one
-# variant, with as many experiences of it as both blocks of the lifetime together.
+# Two variants alternate, twice each. Everything is logged in the l2logger format, as by `driftworld run`. Each expert
+# learns one variant, with as many experiences as in both blocks of the lifetime together.
 
 # %%
 VARIANTS = [f"{SPEC}#day", f"{SPEC}#evening"]
@@ -104,9 +104,9 @@ for name, by_sky in (("one_memory", False), ("memory_by_sky", True)):
 # %% [markdown]
 # ## What was retained
 #
-# Performance maintenance below 0 is forgetting; forward and backward transfer above 1 is one task helping another.
-# `driftworld.metrics(log).null` shows whether a number may be due to chance: the values of the same log if the agent
-# had never changed.
+# Performance maintenance below 0 means forgetting; forward and backward transfer above 1 mean that one task helps
+# another. `driftworld.metrics(log).null` shows whether a number may be due to chance: it has the range of values that
+# the same log would give if the agent had never changed.
 
 # %%
 scores = driftworld.metrics([LOGS / "one_memory", LOGS / "memory_by_sky"], ste=experts)

@@ -44,8 +44,8 @@ variants = [task.variant(name) for name in NAMES]
 # %% [markdown]
 # ## Worlds
 #
-# World number i under a seed is a pure function of the variant, the seed and i. With the same seed, variants share
-# their random numbers: equal parts of their specs are equal in their worlds.
+# World number i of a seed is a pure function of the variant, the seed and i. With the same seed, variants share their
+# random numbers, so equal parts of their specs give equal parts of their worlds.
 
 # %%
 world = task.variant("blue").sample(seed=3, index=0)
@@ -59,7 +59,7 @@ for name, drawn in (("blue", world), ("wide", wide)):
 # %% [markdown]
 # ## What an agent sees
 #
-# Colour, distance, and the value of objects: the modalities of one observation.
+# An observation has several modalities: here colour, distance, and the reward category of objects.
 
 # %%
 env = gym.make(
@@ -83,7 +83,7 @@ plt.show()
 # %% [markdown]
 # ## Distances between variants
 #
-# Parameter by parameter, in units of each parameter's range, and separately for each element.
+# The distance is a sum over parameters, in units of their ranges, and is split by element.
 
 # %%
 print(driftworld.distance("find_objects#blue", "find_objects#dusk").explain())
@@ -98,14 +98,14 @@ left.set_title("distance")
 figure.colorbar(picture, ax=left, shrink=0.85)
 
 order = driftworld.order(matrix)
-print("a short way through all of them:", " > ".join(label.split("#")[-1] for label in order.labels))
+print("a short path through all of them:", " > ".join(label.split("#")[-1] for label in order.labels))
 
-# Two coordinates for each variant that preserve the distances as well as possible: classical scaling.
-places = matrix.embed(2)
-right.plot(*places[order.indices].T, color="0.6", linewidth=1)
-right.scatter(*places.T, zorder=2)
-for number, (name, place) in enumerate(zip(NAMES, places, strict=True)):
-    right.annotate(name, place, xytext=(6, 6 if number % 2 else -12), textcoords="offset points")
+# Classical scaling gives each variant two coordinates that preserve the distances as well as possible.
+points = matrix.embed(2)
+right.plot(*points[order.indices].T, color="0.6", linewidth=1)
+right.scatter(*points.T, zorder=2)
+for number, (name, point) in enumerate(zip(NAMES, points, strict=True)):
+    right.annotate(name, point, xytext=(6, 6 if number % 2 else -12), textcoords="offset points")
 right.set_title("variants on a plane, and the order")
 right.set_aspect("equal", adjustable="datalim")
 plt.show()
@@ -113,7 +113,7 @@ plt.show()
 # %% [markdown]
 # ## A curriculum
 #
-# The same variants as blocks of learning, with evaluations of all of them before and after each.
+# Three variants become blocks of learning, with evaluations of all of them before and after each block.
 
 # %%
 curriculum = driftworld.Curriculum.design(
@@ -137,14 +137,14 @@ for block in curriculum:
 
 # %%
 class Wanderer:
-    """Walks ahead with random turns; learns nothing."""
+    """Walks ahead with random turns, and learns nothing."""
 
     def begin(self, label, seed):
         # Seeded in each experience, so that a frozen agent acts identically when an evaluation is repeated.
-        self.chance = np.random.default_rng(seed)
+        self.rng = np.random.default_rng(seed)
 
     def act(self, observation, info):
-        return np.array([1.0, self.chance.uniform(-0.4, 0.4)])
+        return np.array([1.0, self.rng.uniform(-0.4, 0.4)])
 
     def learn(self, transition):
         pass
