@@ -1,13 +1,13 @@
-"""The native vector environment as Stable-Baselines3's ``VecEnv``.
+"""Provides the native vector environment as Stable-Baselines3's ``VecEnv``.
 
     from driftworld.adapters.sb3 import make_vec_env
     from stable_baselines3 import PPO
 
     PPO("CnnPolicy", make_vec_env("driftworld/FindObjects-v0", num_envs=16, seed=0, modalities="rgb", actions="discrete")).learn(100_000)
 
-``Agent`` is the reverse: it runs a Stable-Baselines3 model through a Driftworld curriculum.
+``Agent`` works the other way round: it runs a Stable-Baselines3 model through a Driftworld curriculum.
 
-Observations are copies, because Stable-Baselines3 keeps the last one while the next is made. ``DummyVecEnv`` also works
+Observations are copies, because Stable-Baselines3 keeps the last one while the next is computed. ``DummyVecEnv`` works
 without this adapter, but steps one environment at a time.
 """
 
@@ -48,9 +48,9 @@ def make_vec_env(
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
         num_envs: Number of environments, from 1.
-        seed: The seed of the worlds, for :func:`driftworld.spread_seeds`; ``None`` draws a random seed.
-        monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and
-            lengths are in ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
+        seed: The seed from which :func:`driftworld.spread_seeds` derives the worlds; ``None`` draws a random seed.
+        monitor_dir: A folder for ``monitor.csv``, which lists the returns of all episodes; ``None`` writes no file. In
+            both cases ``info["episode"]`` has return and length, so that Stable-Baselines3 prints ``ep_rew_mean``.
         **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``;
             ``autoreset_mode`` and ``copy`` are fixed.
 
@@ -67,8 +67,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
 
     When an episode ends, the step returns the next episode's first observation, as Stable-Baselines3 expects; ``info``
     then has ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and its other entries belong to the step itself.
-    ``get_attr``, ``set_attr`` and ``env_method`` work on each environment, as ``DummyVecEnv`` does over single ones;
-    calls that would have no effect are refused.
+    ``get_attr``, ``set_attr`` and ``env_method`` work on each environment, as in ``DummyVecEnv``; calls that would have
+    no effect are rejected.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
@@ -99,8 +99,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """Seeds the next reset, by :func:`driftworld.spread_seeds`; ``None`` draws a random seed. Returns each
-        environment's seed.
+        """Sets the seeds of the next reset, by :func:`driftworld.spread_seeds`; ``None`` draws a random seed. Returns
+        each environment's seed.
         """
         if seed is None:
             seed = int(np.random.randint(0, np.iinfo(np.int32).max))
@@ -112,25 +112,25 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
 
         Args:
             options: Options of a single environment's reset: one dictionary for all, or a list with one for each, such
-                as ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` applies them again.
+                as ``[{"variant": "red"}, {"variant": "blue"}]``. The next :meth:`reset` applies them too.
         """
         super().set_options(cast(Any, options))
         groups = self._groups()
         try:
-            for asked, _ in groups:
-                unknown = sorted(asked.keys() - _NEXT)
+            for wanted, _ in groups:
+                unknown = sorted(wanted.keys() - _NEXT_OPTIONS)
                 if unknown:
-                    raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT)}")
-                # Invalid options change no environment.
-                self._native.check_next(**asked)
+                    raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT_OPTIONS)}")
+                # Check all options before any environment is changed.
+                self._native.check_next(**wanted)
         except Exception:
             self._reset_options()
             raise
-        for asked, mask in groups:
-            self.envs.set_next(**asked, mask=mask)
+        for wanted, mask in groups:
+            self.envs.set_next(**wanted, mask=mask)
 
     def reset(self) -> Any:
-        """Starts new episodes in all environments, with the seeds and options set before; both are used once.
+        """Starts new episodes in all environments, with the seeds and options set before; each is used only once.
 
         Returns:
             The first observations, ``(num_envs, …)``.
@@ -139,21 +139,21 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         try:
             for options, mask in self._groups():
                 seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
-                # Always with a mask, even if it selects all: like a single environment, each then gets its own queue.
-                asked: dict[str, Any] = {**options, "reset_mask": mask}
+                # The mask is passed even if it selects all environments: then each has its own queue, like a single environment.
+                wanted: dict[str, Any] = {**options, "reset_mask": mask}
                 observations, vector_info = self.envs.reset(
-                    seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
+                    seed=seeds if any(seed is not None for seed in seeds) else None, options=wanted
                 )
                 for index in np.flatnonzero(mask):
-                    self.reset_infos[index] = _of_one(vector_info, int(index))
+                    self.reset_infos[index] = _info_of(vector_info, int(index))
         finally:
-            # Invalid options are not applied again.
+            # Also after an error, so that invalid options are not applied again.
             self._reset_seeds()
             self._reset_options()
         return observations
 
     def _groups(self) -> list[tuple[dict[str, Any], npt.NDArray[np.bool_]]]:
-        """The distinct options, each with the mask of its environments."""
+        """The distinct options, each with a mask of the environments that have them."""
         groups: list[tuple[dict[str, Any], npt.NDArray[np.bool_]]] = []
         for index, options in enumerate(self._options):
             mask = next((mask for known, mask in groups if known == options), None)
@@ -164,11 +164,11 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return groups
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
-        """Stores the actions, ``(num_envs, …)``; :meth:`step_wait` takes the step."""
+        """Stores the actions, ``(num_envs, …)``, for :meth:`step_wait`."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Any, npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
-        """Steps all environments: observations, rewards (float32), dones, and one info for each."""
+        """Steps all environments; returns observations, rewards (float32), dones, and one info for each."""
         if self._actions is None:
             raise RuntimeError("step_wait: found no actions, expected step_async before; call step(actions)")
         observations, rewards, terminated, truncated, vector_info = self.envs.step(self._actions)
@@ -176,7 +176,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         dones = np.logical_or(terminated, truncated)
         infos: list[dict[str, Any]] = []
         for index in range(self.num_envs):
-            info = _of_one(vector_info, index)
+            info = _info_of(vector_info, index)
             if dones[index]:
                 info.pop("final_obs", None)
                 last = info.pop("final_info", {})
@@ -187,31 +187,29 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return observations, np.asarray(rewards, dtype=np.float32), dones, infos
 
     def close(self) -> None:
-        """Marks the environments as closed; may be called again. Their memory is freed when nothing refers to them any
-        more.
-        """
+        """Marks the environments as closed; may be called repeatedly. Their memory is freed once nothing refers to them."""
         self.envs.close()
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8] | None]:
-        """A picture of each environment, with ``render_mode="rgb_array"``."""
+        """A picture of each environment; ``None`` for each unless ``render_mode="rgb_array"``."""
         pictures = self.envs.render()
         return list(pictures) if pictures is not None else [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: int | Iterable[int] | None = None) -> list[Any]:
-        """An attribute of each of these environments, as ``DummyVecEnv`` returns it for single ones.
+        """An attribute of each of these environments, as in ``DummyVecEnv``.
 
         Raises:
-            AttributeError: There is no such attribute.
+            AttributeError: If there is no such attribute.
         """
-        return [part.get_wrapper_attr(attr_name) for part in self._chosen(indices)]
+        return [part.get_wrapper_attr(attr_name) for part in self._select(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:
         """Sets a user-defined attribute in each of these environments, for :meth:`get_attr`.
 
         Raises:
-            ValueError: For a constructor option or a built-in attribute, where setting it would have no effect.
+            ValueError: For a constructor option or a built-in attribute, because setting it would have no effect.
         """
-        chosen = self._chosen(indices)
+        chosen = self._select(indices)
         for part in chosen:
             part.refuse_to_set(attr_name, value)
         for part in chosen:
@@ -224,15 +222,15 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         indices: int | Iterable[int] | None = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """Calls a method of each of these environments, as ``DummyVecEnv`` does for single ones.
+        """Calls a method of each of these environments, as in ``DummyVecEnv``.
 
-        ``"reset"`` starts an episode in these alone; the next step returns the remaining results.
+        ``"reset"`` starts an episode in these environments only; the next step returns the remaining results.
 
         Raises:
-            AttributeError: There is no such method.
-            RuntimeError: For ``"step"``, and for ``"close"`` of some: environments step and close together.
+            AttributeError: If there is no such method.
+            RuntimeError: For ``"step"``, and for ``"close"`` of only some environments: they step and close together.
         """
-        chosen = self._chosen(indices)
+        chosen = self._select(indices)
         if method_name == "close" and {id(part) for part in chosen} == {id(part) for part in self._parts}:
             self.close()
             return [None for _ in chosen]
@@ -240,19 +238,19 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: int | Iterable[int] | None = None) -> list[bool]:
         """Always False: native environments have no wrappers."""
-        return [False for _ in self._chosen(indices)]
+        return [False for _ in self._select(indices)]
 
-    def _chosen(self, indices: int | Iterable[int] | None) -> list[Part]:
+    def _select(self, indices: int | Iterable[int] | None) -> list[Part]:
         """The selected environments; negative numbers count from the last."""
         return [self._parts[index] for index in self._get_indices(indices)]
 
 
 #: The options that an environment accepts for its next episode.
-_NEXT = ("variant", "index", "world", "queue")
+_NEXT_OPTIONS = ("variant", "index", "world", "queue")
 
 
 class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """Also clears the returns and lengths of environments that are reset individually, by :meth:`env_method`."""
+    """A ``VecMonitor`` that also clears returns and lengths of environments that :meth:`env_method` resets."""
 
     def env_method(
         self,
@@ -262,22 +260,22 @@ class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it 
         **method_kwargs: Any,
     ) -> list[Any]:
         """Like :meth:`DriftworldVecEnv.env_method`."""
-        answers: list[Any] = self.venv.env_method(method_name, *method_args, indices=indices, **method_kwargs)
+        results: list[Any] = self.venv.env_method(method_name, *method_args, indices=indices, **method_kwargs)
         if method_name == "reset":
             chosen = list(self._get_indices(indices))
             self.episode_returns[chosen] = 0
             self.episode_lengths[chosen] = 0
-        return answers
+        return results
 
 
-def _of_one(vector_info: Mapping[str, Any], index: int) -> dict[str, Any]:
-    """The info of one environment, from a vector environment's infos."""
-    one: dict[str, Any] = {}
+def _info_of(vector_info: Mapping[str, Any], index: int) -> dict[str, Any]:
+    """One environment's part of a vector environment's infos."""
+    info: dict[str, Any] = {}
     for name, values in vector_info.items():
         mask = vector_info.get(f"_{name}")
-        # Mask entries have no masks of their own and carry no values.
+        # Masks are skipped too, because they have no masks of their own.
         if mask is None or not mask[index]:
             continue
-        value = _of_one(values, index) if isinstance(values, Mapping) else values[index]
-        one[name] = value.item() if isinstance(value, np.generic) else value
-    return one
+        value = _info_of(values, index) if isinstance(values, Mapping) else values[index]
+        info[name] = value.item() if isinstance(value, np.generic) else value
+    return info

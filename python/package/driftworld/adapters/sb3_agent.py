@@ -32,7 +32,7 @@ from driftworld._plain import described
 from driftworld.lifetimes import Transition
 
 #: Attributes that a model keeps when another one is loaded into it.
-_KEPT = ("env", "_vec_normalize_env", "_logger", "_custom_logger")
+_KEPT_ATTRIBUTES = ("env", "_vec_normalize_env", "_logger", "_custom_logger")
 #: Schedules over the remaining share of ``total_timesteps``, for models that have them.
 _SCHEDULES = ("lr_schedule", "clip_range", "clip_range_vf", "exploration_schedule")
 
@@ -41,13 +41,13 @@ class Agent:
     """Wraps a model that collects rollouts like Stable-Baselines3's ``OnPolicyAlgorithm`` or ``OffPolicyAlgorithm``:
     PPO, A2C, DQN, SAC, TD3.
 
-    It updates when ``model.learn`` would, and to the same weights from the same experience. Evaluations use the seeds
-    of their experiences, and leave the model and the global random generators unchanged. In
-    :meth:`driftworld.Curriculum.run_vector` all environments of an evaluation share one random stream, so an action
+    It updates the model when ``model.learn`` would, and the same experience leads to the same weights. Evaluations draw
+    random numbers from the seeds of their experiences, and leave the model and the global random generators unchanged.
+    In :meth:`driftworld.Curriculum.run_vector` all environments of an evaluation share one random stream, so an action
     also depends on the experiences that run beside it.
 
-    Near the end of a block some environments have no experience. PPO's updates skip their steps. DQN adds a row to its
-    replay buffer as soon as there are ``n_envs`` steps of any environments, and counts rows.
+    Near the end of a block some environments are idle. Updates of on-policy models skip their steps. Off-policy models
+    add a row to the replay buffer as soon as there are ``n_envs`` steps of any environments, and count rows.
 
     :meth:`save` writes a folder: ``model.zip``, for Stable-Baselines3's own ``load``, and ``rest.pkl`` with the buffer.
     Loading unpickles both, which may run code.
@@ -55,15 +55,15 @@ class Agent:
     Args:
         model: Made with ``curriculum.environment(**options)``, or with a ``DummyVecEnv`` of ``num_envs`` such
             environments.
-        total_timesteps: As for ``model.learn``: decisions after which schedules stay at their final value. It may be
-            omitted if the model has no schedules.
-        policy: ``"sampled"`` or ``"greedy"``, in evaluations; ``None`` is sampled for on-policy models, greedy for the
-            others.
+        total_timesteps: The number of decisions after which schedules stay at their final value, as for
+            ``model.learn``. It may be omitted if the model has no schedules.
+        policy: ``"sampled"`` or ``"greedy"``, for evaluations; ``None`` means sampled for on-policy models, and greedy
+            for the others.
 
     Raises:
         TypeError: If the model collects rollouts in its own way, like recurrent models.
-        ValueError: If the model has a schedule and there is no ``total_timesteps``; if its environment normalizes or
-            stacks observations; if it has ``use_sde``; for replay buffer options that do not support several
+        ValueError: If the model has a schedule but ``total_timesteps`` is missing, if its environment normalises or
+            stacks observations, if it has ``use_sde``, or if options of its replay buffer do not support several
             environments.
     """
 
@@ -73,14 +73,14 @@ class Agent:
         self.name = type(model).__name__
         if kind is None or type(model).collect_rollouts is not kind.collect_rollouts:
             raise TypeError(f"model: found {self.name}, which collects rollouts its own way, expected a model such as PPO or DQN")
-        _refuse(model, total_timesteps)
+        _reject_unsupported(model, total_timesteps)
         self.model = model
         self.policy = policy or ("sampled" if kind is OnPolicyAlgorithm else "greedy")
         if self.policy not in ("sampled", "greedy"):
             raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
         arguments = {name: described(getattr(model, name, None)) for name in inspect.signature(type(model).__init__).parameters}
         numbers = {name: value for name, value in arguments.items() if isinstance(value, (int, float)) and name != "verbose"}
-        #: The model's arguments that are numbers: a log can only be resumed with the same ones.
+        #: The model's numeric arguments; a log can only be resumed with equal ones.
         self.made_with = {**numbers, "total_timesteps": total_timesteps}
         if not model.verbose and model.tensorboard_log is None and not model._custom_logger:
             # Stable-Baselines3's own logger creates a temporary folder and never removes it, even if it writes nothing.
@@ -88,71 +88,71 @@ class Agent:
         model._setup_learn(total_timesteps or 0)
         model.policy.set_training_mode(False)
         self._collector = kinds[kind](model, total_timesteps)
-        self._chances = [np.random.default_rng() for _ in range(model.n_envs)]
+        self._generators = [np.random.default_rng() for _ in range(model.n_envs)]
         self._actions = copy.deepcopy(model.action_space)
         self._frozen = False
 
     def begin(self, *beginning: Any) -> None:
-        """Seeds the evaluation that starts: ``(label, seed)``, or ``(env, label, seed)``."""
+        """Seeds the experience that begins: ``(label, seed)``, or ``(env, label, seed)``."""
         env, seed = (beginning[0] if len(beginning) == 3 else 0), beginning[-1]
-        if env >= len(self._chances):
-            raise ValueError(f"Agent: found more environments than the model's {len(self._chances)}; pass num_envs={len(self._chances)}")
-        self._chances[env] = np.random.default_rng([seed, self.model.seed or 0])
+        if env >= len(self._generators):
+            raise ValueError(f"Agent: found more environments than the model's {len(self._generators)}; pass num_envs={len(self._generators)}")
+        self._generators[env] = np.random.default_rng([seed, self.model.seed or 0])
 
     def freeze(self, frozen: bool) -> None:
         """Sets whether the agent is being evaluated."""
         self._frozen = frozen
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
-        """Actions for all environments, or for the only one."""
+        """Actions for all environments, or the action of a single one."""
         is_many = "active" in infos
-        seen = self._seen(observations if is_many else _lifted(observations))
+        observed = self._model_observations(observations if is_many else _batch_of_one(observations))
         if self._frozen:
             with self._evaluation_randomness(np.flatnonzero(infos["active"]) if is_many else np.zeros(1, dtype=int)):
-                actions = self.model.predict(seen, deterministic=self.policy == "greedy")[0]
+                actions = self.model.predict(observed, deterministic=self.policy == "greedy")[0]
         else:
-            actions = self._collector.act(seen)
+            actions = self._collector.act(observed)
         return actions if is_many else actions[0]
 
     def learn(self, transition: Any) -> None:
         """Stores a step, and learns when ``model.learn`` would."""
         if isinstance(transition, Transition):
-            following = _lifted(transition.next_observation)
+            next_obs = _batch_of_one(transition.next_observation)
             numbers = [transition.reward, transition.terminated, transition.truncated, True]
         else:
-            following = transition.next_observations
+            next_obs = transition.next_observations
             numbers = [transition.rewards, transition.terminated, transition.truncated, transition.active]
         rewards, terminated, truncated, active = (np.atleast_1d(number) for number in numbers)
         self._collector.learn(
-            self._seen(following), rewards.astype(np.float32), terminated | truncated, truncated & ~terminated, active
+            self._model_observations(next_obs), rewards.astype(np.float32), terminated | truncated, truncated & ~terminated, active
         )
 
-    def _seen(self, observations: Any) -> Any:
-        """Observations as the model's environment returns them: images with the channels first."""
+    def _model_observations(self, observations: Any) -> Any:
+        """Converts observations to the layout of the model's environment, in which images have channels first."""
         space, model = self.model.observation_space, self.model
         spaces = getattr(space, "spaces", {"": space})
         arrays = observations if isinstance(observations, Mapping) else {"": observations}
-        seen = {kind: maybe_transpose(array, spaces[kind]) for kind, array in arrays.items() if kind in spaces}
+        observed = {kind: maybe_transpose(array, spaces[kind]) for kind, array in arrays.items() if kind in spaces}
         expected = {kind: (model.n_envs, *each.shape) for kind, each in spaces.items()}
-        if {kind: array.shape for kind, array in seen.items()} != expected:
+        if {kind: array.shape for kind, array in observed.items()} != expected:
             found = {kind: array.shape for kind, array in arrays.items()}
             raise ValueError(
                 f"Agent: found observations {found}, expected {expected} (images with the channels first or last) as of the model's "
                 f"environment; make the model with curriculum.environment(**options), and run it with these options and num_envs={model.n_envs}"
             )
-        return seen if isinstance(observations, Mapping) else seen[""]
+        return observed if isinstance(observations, Mapping) else observed[""]
 
     @contextmanager
     def _evaluation_randomness(self, active: NDArray[Any]) -> Iterator[None]:
-        """Draws from the seeds of these environments' experiences, and leaves the learning generators unchanged."""
+        """Draws random numbers from the seeds of these environments' experiences, and restores all other generators."""
         model = self.model
-        seed = int(np.random.SeedSequence([int(self._chances[env].integers(2**32)) for env in active]).generate_state(1)[0])
+        seed = int(np.random.SeedSequence([int(self._generators[env].integers(2**32)) for env in active]).generate_state(1)[0])
         before, space = np.random.get_state(), model.action_space
-        cards = [model.device] if model.device.type == "cuda" else []
-        with torch.random.fork_rng(devices=cards):
-            # `torch.manual_seed` takes milliseconds if torch was built for GPUs and there is none.
+        devices = [model.device] if model.device.type == "cuda" else []
+        with torch.random.fork_rng(devices=devices):
+            # `torch.manual_seed` would take milliseconds where torch was built for GPUs but there is none.
             torch.default_generator.manual_seed(seed)
-            if cards:
+            if devices:
                 torch.cuda.manual_seed(seed)
             np.random.seed(seed)
             self._actions.seed(seed)
@@ -164,16 +164,16 @@ class Agent:
                 np.random.set_state(before)
 
     def save(self, path: Path) -> None:
-        """Writes the model, its buffer and its random numbers into a folder."""
+        """Writes the model, its buffer and the states of the random generators into a folder."""
         path.mkdir()
         self.model.save(path / "model.zip")
-        chances = torch.get_rng_state(), np.random.get_state()
-        save_to_pkl(path / "rest.pkl", (self._collector.state(), chances))
+        random_states = torch.get_rng_state(), np.random.get_state()
+        save_to_pkl(path / "rest.pkl", (self._collector.state(), random_states))
 
     def load(self, path: Path) -> None:
-        """Loads what :meth:`save` wrote."""
+        """Loads a folder that :meth:`save` wrote."""
         loaded = type(self.model).load(path / "model.zip", device=self.model.device)
-        vars(self.model).update({name: value for name, value in vars(loaded).items() if name not in _KEPT})
+        vars(self.model).update({name: value for name, value in vars(loaded).items() if name not in _KEPT_ATTRIBUTES})
         state, (torch_state, numpy_state) = load_from_pkl(path / "rest.pkl")
         self._collector.load_state(state)
         self.model.policy.set_training_mode(False)
@@ -182,15 +182,16 @@ class Agent:
 
 
 class _Collector:
-    """The part of a rollout that does not depend on the kind of model.
+    """Collects rollouts: the part that does not depend on the kind of model.
 
     Args:
         model: The model.
-        total: Decisions after which schedules stay at their final value.
+        total: The number of decisions after which schedules stay at their final value.
     """
 
-    #: The collector's attributes that make up a rollout, and the attribute name of the model's buffer.
-    kept: tuple[str, ...] = ()
+    #: The names of the collector's attributes that make up its state.
+    state_names: tuple[str, ...] = ()
+    #: The name of the model's attribute that holds its buffer.
     buffer = ""
 
     def __init__(self, model: Any, total: int | None) -> None:
@@ -198,21 +199,21 @@ class _Collector:
 
     def state(self) -> dict[str, Any]:
         """The state of the current rollout."""
-        return {"buffer": getattr(self.model, self.buffer), **{name: getattr(self, name) for name in self.kept}}
+        return {"buffer": getattr(self.model, self.buffer), **{name: getattr(self, name) for name in self.state_names}}
 
     def load_state(self, state: dict[str, Any]) -> None:
-        """Restores what :meth:`state` returned."""
+        """Restores a state that :meth:`state` returned."""
         setattr(self.model, self.buffer, state["buffer"])
-        vars(self).update({name: state[name] for name in self.kept})
+        vars(self).update({name: state[name] for name in self.state_names})
 
-    def act(self, seen: Any) -> NDArray[Any]:
+    def act(self, observed: Any) -> NDArray[Any]:
         """Actions with exploration; stores what learning needs."""
         raise NotImplementedError
 
     def learn(
-        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+        self, next_obs: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
-        """Stores a step of the active environments, and learns if it is time to."""
+        """Stores a step of the active environments, and trains the model if an update is due."""
         raise NotImplementedError
 
     def note_progress(self) -> None:
@@ -224,7 +225,7 @@ class _Collector:
 class _OnPolicy(_Collector):
     """``OnPolicyAlgorithm.collect_rollouts``, step by step."""
 
-    kept = ("active", "starts")
+    state_names = ("active", "starts")
     buffer = "rollout_buffer"
 
     def __init__(self, model: Any, total: int | None) -> None:
@@ -233,43 +234,43 @@ class _OnPolicy(_Collector):
         self.active: list[NDArray[np.bool_]] = []
         self.starts = np.ones(model.n_envs, dtype=np.bool_)
 
-    def act(self, seen: Any) -> NDArray[Any]:
+    def act(self, observed: Any) -> NDArray[Any]:
         """Actions clipped to the space; stores the unclipped ones with their values and log probabilities."""
         model = self.model
         with torch.no_grad():
-            drawn, self.values, self.log_probs = model.policy(obs_as_tensor(seen, model.device))
-        self.seen, self.drawn = seen, drawn.cpu().numpy()
+            sampled_actions, self.values, self.log_probs = model.policy(obs_as_tensor(observed, model.device))
+        self.observed, self.sampled_actions = observed, sampled_actions.cpu().numpy()
         if not hasattr(model.action_space, "low"):
-            return np.asarray(self.drawn)
+            return np.asarray(self.sampled_actions)
         if model.policy.squash_output:
-            return np.asarray(model.policy.unscale_action(self.drawn))
-        return np.asarray(np.clip(self.drawn, model.action_space.low, model.action_space.high))
+            return np.asarray(model.policy.unscale_action(self.sampled_actions))
+        return np.asarray(np.clip(self.sampled_actions, model.action_space.low, model.action_space.high))
 
     def learn(
-        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+        self, next_obs: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
-        """Like :meth:`_Collector.learn`; learns when the buffer is full."""
+        """Like :meth:`_Collector.learn`; an update is due when the buffer is full."""
         model, buffer = self.model, self.model.rollout_buffer
         model.num_timesteps += int(active.sum())
         for env in np.flatnonzero(cut_off).tolist():
-            last = model.policy.obs_to_tensor(_row(following, env))[0]
+            last = model.policy.obs_to_tensor(_row(next_obs, env))[0]
             with torch.no_grad():
-                # In float32, like Stable-Baselines3.
+                # Computed in float32, like Stable-Baselines3.
                 rewards[env] += (model.gamma * model.policy.predict_values(last)[0]).item()
-        drawn = self.drawn if hasattr(model.action_space, "low") else self.drawn.reshape(model.n_envs, -1)
-        buffer.add(self.seen, drawn, rewards, self.starts, self.values, self.log_probs)
+        sampled_actions = self.sampled_actions if hasattr(model.action_space, "low") else self.sampled_actions.reshape(model.n_envs, -1)
+        buffer.add(self.observed, sampled_actions, rewards, self.starts, self.values, self.log_probs)
         self.active.append(active)
         self.starts = ended | ~active
         if not buffer.full:
             return
         with torch.no_grad():
-            values = model.policy.predict_values(obs_as_tensor(following, model.device))
+            values = model.policy.predict_values(obs_as_tensor(next_obs, model.device))
         buffer.compute_returns_and_advantage(last_values=values, dones=self.starts)
         self.note_progress()
-        # In the order in which the buffer flattens its own arrays: environment by environment.
-        places = np.flatnonzero(np.stack(self.active, axis=1))
-        if len(places) < buffer.buffer_size * model.n_envs:
-            buffer.get = partial(_active_samples, buffer, places)
+        # Positions in the flattened arrays of the buffer, which go environment by environment.
+        positions = np.flatnonzero(np.stack(self.active, axis=1))
+        if len(positions) < buffer.buffer_size * model.n_envs:
+            buffer.get = partial(_active_samples, buffer, positions)
         model.train()
         vars(buffer).pop("get", None)
         model.policy.set_training_mode(False)
@@ -278,9 +279,9 @@ class _OnPolicy(_Collector):
 
 
 class _OffPolicy(_Collector):
-    """``OffPolicyAlgorithm.collect_rollouts``, step by step; a step is a row of ``n_envs`` decisions."""
+    """``OffPolicyAlgorithm.collect_rollouts``, step by step. A step is a row of ``n_envs`` decisions."""
 
-    kept = ("waiting", "steps", "episodes")
+    state_names = ("waiting", "steps", "episodes")
     buffer = "replay_buffer"
 
     def __init__(self, model: Any, total: int | None) -> None:
@@ -288,30 +289,30 @@ class _OffPolicy(_Collector):
         self.waiting: list[tuple[Any, ...]] = []
         self.steps = self.episodes = 0
 
-    def act(self, seen: Any) -> NDArray[Any]:
-        """Actions with exploration; stores them in the form that the replay buffer expects."""
+    def act(self, observed: Any) -> NDArray[Any]:
+        """Actions with exploration; also stores them in the form that the replay buffer expects."""
         model = self.model
-        self.seen = model._last_obs = seen
+        self.observed = model._last_obs = observed
         actions, self.stored = model._sample_action(model.learning_starts, model.action_noise, model.n_envs)
         return np.asarray(actions)
 
     def learn(
-        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+        self, next_obs: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
         """Like :meth:`_Collector.learn`; stores a row as soon as there are enough decisions for one."""
         model = self.model
         for env in np.flatnonzero(active).tolist():
             info = {"TimeLimit.truncated": bool(cut_off[env])}
-            step = _row(self.seen, env), _row(following, env), self.stored[env], rewards[env], ended[env], info
+            step = _row(self.observed, env), _row(next_obs, env), self.stored[env], rewards[env], ended[env], info
             self.waiting.append(step)
             if ended[env] and model.action_noise is not None:
                 model.action_noise.reset(**({"indices": [env]} if model.n_envs > 1 else {}))
         if len(self.waiting) < model.n_envs:
             return
         row, self.waiting = self.waiting[: model.n_envs], self.waiting[model.n_envs :]
-        seen, then, actions, paid, dones, infos = zip(*row, strict=True)
+        observed, row_next_obs, actions, row_rewards, dones, infos = zip(*row, strict=True)
         model.num_timesteps += model.n_envs
-        model.replay_buffer.add(_stacked(seen), _stacked(then), np.stack(actions), np.array(paid), np.array(dones), list(infos))
+        model.replay_buffer.add(_stack(observed), _stack(row_next_obs), np.stack(actions), np.array(row_rewards), np.array(dones), list(infos))
         self.note_progress()
         model._on_step()
         self.steps, self.episodes = self.steps + 1, self.episodes + sum(map(int, dones))
@@ -325,12 +326,12 @@ class _OffPolicy(_Collector):
             model.policy.set_training_mode(False)
 
 
-def _refuse(model: Any, total: int | None) -> None:
-    """Refuses models that would not learn as ``model.learn`` does."""
+def _reject_unsupported(model: Any, total: int | None) -> None:
+    """Rejects models that would not learn as with ``model.learn``."""
     schedules = [name for name in _SCHEDULES if callable(getattr(model, name, None))]
-    falling = [name for name in schedules if getattr(model, name)(1.0) != getattr(model, name)(0.0)]
-    if falling and total is None:
-        raise ValueError(f"total_timesteps: found none for the model's {falling[0]}, expected after how many decisions it has fallen")
+    changing = [name for name in schedules if getattr(model, name)(1.0) != getattr(model, name)(0.0)]
+    if changing and total is None:
+        raise ValueError(f"total_timesteps: found none for the model's {changing[0]}, expected after how many decisions it has fallen")
     if model.use_sde:
         raise ValueError("model: found use_sde=True, expected False: its noise is drawn for rollouts, not for experiences")
     wrapper = model.env
@@ -343,18 +344,18 @@ def _refuse(model: Any, total: int | None) -> None:
             raise ValueError(f"model: found {name}={getattr(model, name)} with {model.n_envs} environments, expected one, or {name}={plain}")
 
 
-def _active_samples(buffer: Any, places: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:
-    """Like ``buffer.get``, for these positions of its flattened arrays only."""
-    # The first call of `get` flattens the arrays.
+def _active_samples(buffer: Any, positions: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:
+    """Like ``buffer.get``, but yields only these positions of its flattened arrays."""
+    # The first `get` flattens the arrays.
     next(type(buffer).get(buffer, 1))
-    shuffled = np.random.permutation(places)
+    shuffled = np.random.permutation(positions)
     for start in range(0, len(shuffled), batch_size or len(shuffled)):
         yield buffer._get_samples(shuffled[start : start + (batch_size or len(shuffled))])
 
 
-def _lifted(observation: Any) -> Any:
+def _batch_of_one(observation: Any) -> Any:
     """One observation as a batch of one."""
-    return _stacked([observation])
+    return _stack([observation])
 
 
 def _row(observations: Any, env: int) -> Any:
@@ -364,7 +365,7 @@ def _row(observations: Any, env: int) -> Any:
     return observations[env]
 
 
-def _stacked(rows: Any) -> Any:
+def _stack(rows: Any) -> Any:
     """Observations of several environments as a batch."""
     if isinstance(rows[0], Mapping):
         return {kind: np.stack([row[kind] for row in rows]) for kind in rows[0]}
