@@ -51,8 +51,8 @@ def page(rows: list[dict[str, Any]]) -> str:
 
 if __name__ == "__main__":
     ROWS = json.loads((ROOT / "docs/bugs.json").read_text(encoding="utf-8"))
-    if LOST := missing(ROWS):
-        sys.exit("docs/bugs.json: found no test " + ", ".join(LOST))
+    if MISSING := missing(ROWS):
+        sys.exit("docs/bugs.json: found no test " + ", ".join(MISSING))
     if "--check" not in sys.argv[1:]:
         PAGE.write_text(page(ROWS), encoding="utf-8")
     elif not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != page(ROWS):

@@ -1,15 +1,15 @@
-"""Measures the task families, and writes a page for each: docs/families/NAME.md with its film, and docs/families.md,
-the list.
+"""Measures the task families, and writes a page with a film for each, docs/families/NAME.md, and their list,
+docs/families.md.
 
-    python scripts/families.py target/release/driftworld measure [NAME]...    into examples/families.json
-    python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/, and a picture of all variants
-    python scripts/families.py target/release/driftworld sheet                docs/images/families.png, all families in one picture
-    python scripts/families.py target/release/driftworld pages                from the above and examples/families_learned.json
+    python scripts/families.py target/release/driftworld measure [NAME]...    writes examples/families.json
+    python scripts/families.py target/release/driftworld film [NAME]...       writes docs/images/families/: films, and pictures of all variants
+    python scripts/families.py target/release/driftworld sheet                writes docs/images/families.png, all families in one picture
+    python scripts/families.py target/release/driftworld pages                writes the pages from the above and examples/families_learned.json
 
 scripts/learn_families.py writes the last file. Pictures need Pillow.
 
-For each variant: the rewards of a random agent and of the planner in 1,000 worlds, the planner's success rate, the
-elements that differ from the first variant in 32 pairs of worlds, and the distance from it.
+Measures for each variant the mean rewards of a random agent and of the planner in 1,000 worlds, the planner's success
+rate, the elements that differ from the first variant, and the distance from the first variant.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ ROOT = Path(__file__).parents[1]
 MEASURED, LEARNED = ROOT / "examples/families.json", ROOT / "examples/families_learned.json"
 FILMS = ROOT / "docs/images/families"
 WORLDS = 1000
-MOST_BYTES = 160_000
+MAX_BYTES = 160_000
 
-#: Names of the same tasks elsewhere.
+#: Names of the same tasks in other projects.
 ELSEWHERE = {
     "collect_health": "MiniWorld-CollectHealth, ViZDoom's health_gathering",
     "contextual_bandit": "the contextual bandit",
@@ -79,41 +79,41 @@ REASONS = {
 }
 
 
-def said(command: str, *words: str) -> Any:
+def run_json(command: str, *words: str) -> Any:
     """A command's JSON output."""
-    done = subprocess.run([command, *words, "--json"], check=False, capture_output=True, text=True)
-    if done.returncode not in (0, 1) or not done.stdout:
-        raise SystemExit(f"{' '.join(words)}: {done.stderr}")
-    return json.loads(done.stdout)
+    process = subprocess.run([command, *words, "--json"], check=False, capture_output=True, text=True)
+    if process.returncode not in (0, 1) or not process.stdout:
+        raise SystemExit(f"{' '.join(words)}: {process.stderr}")
+    return json.loads(process.stdout)
 
 
 def families(command: str) -> dict[str, dict[str, Any]]:
-    """All families that come with the command, in its order."""
-    return {task["task"]: task for task in said(command, "tasks")}
+    """All built-in families, in the command's order."""
+    return {task["task"]: task for task in run_json(command, "tasks")}
 
 
 def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
-    """Measures the variants of a family, in its order."""
-    scales = said(command, "scales", name, "--worlds", str(WORLDS))["scales"]
+    """Measures the variants of a family, in the given order."""
+    scales = run_json(command, "scales", name, "--worlds", str(WORLDS))["scales"]
     by_name = {scale["variant"].partition("#")[2]: scale for scale in scales.values()}
-    elements = {each["variant"]: each for each in said(command, "elements", name)["variants"]}
+    elements = {each["variant"]: each for each in run_json(command, "elements", name)["variants"]}
     first, found = variants[0], {}
     for variant in variants:
         scale = by_name[variant]
         own = elements.get(variant, {"measured": [], "verdict": "sound"})
-        far = 0.0 if variant == first else said(command, "distance", f"{name}#{first}", f"{name}#{variant}", "--worlds", "20")["total"]
+        distance = 0.0 if variant == first else run_json(command, "distance", f"{name}#{first}", f"{name}#{variant}", "--worlds", "20")["total"]
         found[variant] = {
             "random": round(scale["agents"]["random"]["mean"], 2), "planner": round(scale["agents"]["onrails"]["mean"], 2),
             "success": scale["agents"]["onrails"]["success"],
             "elements": " ".join(dict.fromkeys(each["element"] for each in own["measured"])), "verdict": own["verdict"],
-            "distance": round(far, 2),
+            "distance": round(distance, 2),
         }  # fmt: skip
     return found
 
 
 def film(command: str, name: str, variants: list[str]) -> None:
-    """Films the planner in a world of the first variant, in at most 160 kB if possible, and draws all variants, at most
-    16, in one image.
+    """Films the planner in a world of the first variant, in at most 160 kB if possible, and draws the first 16 variants in
+    one image.
     """
     variant = variants[0]
     FILMS.mkdir(parents=True, exist_ok=True)
@@ -121,7 +121,7 @@ def film(command: str, name: str, variants: list[str]) -> None:
     for every in (1, 2, 3, 4, 6, 8, 12):
         words = ["film", f"{name}#{variant}", "--size", "112", "--seed", "1", "--every", str(every), "-o", str(path)]
         subprocess.run([command, *words], check=True, capture_output=True)
-        if path.stat().st_size <= MOST_BYTES:
+        if path.stat().st_size <= MAX_BYTES:
             break
     sheet(command, [f"{name}#{each}" for each in variants[:16]], FILMS / f"{name}.png", 4)
 
@@ -137,8 +137,8 @@ def sheet(command: str, variants: list[str], path: Path, columns: int) -> None:
 
 
 def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
-    """An SVG of learning curves: bold for the mean of the seeds, thin for each; grey for the random agent and the
-    planner.
+    """An SVG of learning curves: thin lines for seeds, a bold line for their mean, and grey lines for the random agent and
+    the planner.
     """
     width, height, left = 300, 120, 60
     shown = [each for seeds in runs.values() for run in seeds for each in run["curve"]] + [scale["random"], scale["planner"]]
@@ -148,9 +148,9 @@ def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, flo
         return round(height * (high - value) / (high - low), 1)
 
     parts = []
-    for which in ("random", "planner"):
-        parts.append(f'<path stroke="#999" stroke-dasharray="4" d="M0 {y(scale[which])}H{width}"/>')
-        parts.append(f'<text x="-4" y="{y(scale[which]) + 4}" text-anchor="end">{which}</text>')
+    for agent in ("random", "planner"):
+        parts.append(f'<path stroke="#999" stroke-dasharray="4" d="M0 {y(scale[agent])}H{width}"/>')
+        parts.append(f'<text x="-4" y="{y(scale[agent]) + 4}" text-anchor="end">{agent}</text>')
     for learner, color in zip(runs, ("#0b5394", "#b45f06"), strict=False):
         seeds = [run["curve"] for run in runs[learner]]
         for line, stroke in [*((each, 0.8) for each in seeds), ([sum(each) / len(each) for each in zip(*seeds, strict=True)], 2.5)]:
@@ -166,22 +166,22 @@ def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, flo
 
 
 def share(reward: float, scale: dict[str, float]) -> float:
-    """A reward as a percentage of the range from the random agent's to the planner's."""
+    """A reward in per cent of the range from the random agent's reward to the planner's."""
     return 100 * (reward - scale["random"]) / (scale["planner"] - scale["random"])
 
 
-def learned_of(runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
-    """The results of each learner, one sentence each."""
-    told = {"ppo": "PPO", "recurrent_ppo": "Recurrent PPO"}
+def result_lines(runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
+    """The results of the learners, a line for each."""
+    titles = {"ppo": "PPO", "recurrent_ppo": "Recurrent PPO"}
     lines = []
     for learner, seeds in runs.items():
         each = ", ".join(f"{share(run['reward'], scale):.0f}" for run in seeds)
         success = ", ".join(f"{100 * run['success']:.0f}" for run in seeds)
-        lines.append(f"- {told[learner]}: {each} % of the way from random to the planner; success in {success} % of 100 worlds")
+        lines.append(f"- {titles[learner]}: {each} % of the way from random to the planner; success in {success} % of 100 worlds")
     return "\n".join(lines)
 
 
-def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[str, str], runs: dict[str, Any]) -> str:
+def page(name: str, task: dict[str, Any], measured: dict[str, Any], descriptions: dict[str, str], runs: dict[str, Any]) -> str:
     """The page of a family."""
     folder = "tasks" if task["group"] == "the paper's" else "worlds"
     elsewhere = f"\n\nKnown elsewhere as: {ELSEWHERE[name]}." if name in ELSEWHERE else ""
@@ -191,7 +191,7 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
     ]  # fmt: skip
     for variant, each in measured.items():
         lines.append(
-            f"| `{variant}` | {told.get(variant, '')} | {each['elements']} | {each['distance']:g} | {each['random']:g} | {each['planner']:g} "
+            f"| `{variant}` | {descriptions.get(variant, '')} | {each['elements']} | {each['distance']:g} | {each['random']:g} | {each['planner']:g} "
             f"| {100 * each['success']:.0f} % |"
         )
     lines += [
@@ -207,7 +207,7 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
         lines += [
             f"![Learning curves of {name}](../images/families/{name}.svg)", "",
             f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`. Afterwards, each seed, actions sampled:", "",
-            learned_of(runs, measured[first]), "",
+            result_lines(runs, measured[first]), "",
         ]  # fmt: skip
     lines += [
         f"All parameters: `driftworld tasks show {name}`. Its document: [{name}.json](../../examples/{folder}/{name}.json).", "",
@@ -216,22 +216,22 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
 
 
 def pages(command: str, docs: Path = ROOT / "docs") -> None:
-    """Writes all pages, their curves and their list."""
+    """Writes all pages, with their curves, and the list."""
     measured, tasks = json.loads(MEASURED.read_text(encoding="utf-8")), families(command)
     learned = json.loads(LEARNED.read_text(encoding="utf-8"))
     for folder in ("families", "images/families"):
         (docs / folder).mkdir(parents=True, exist_ok=True)
     listed: dict[str, list[str]] = {}
     for name, task in tasks.items():
-        told = said(command, "tasks", "show", name)["descriptions"]
+        descriptions = run_json(command, "tasks", "show", name)["descriptions"]
         runs = learned.get(name, {})
-        (docs / f"families/{name}.md").write_text(page(name, task, measured[name], told, runs), encoding="utf-8")
+        (docs / f"families/{name}.md").write_text(page(name, task, measured[name], descriptions, runs), encoding="utf-8")
         first = next(iter(measured[name].values()))
         if runs:
             (docs / f"images/families/{name}.svg").write_text(curve(name, runs, first), encoding="utf-8")
-        came_to = [sum(share(run["reward"], first) for run in seeds) / len(seeds) for seeds in runs.values()]
+        averages = [sum(share(run["reward"], first) for run in seeds) / len(seeds) for seeds in runs.values()]
         row = f"| [`{name}`](families/{name}.md) | {task['description']} | {len(measured[name])} | {first['random']:g} | {first['planner']:g} "
-        row += f"| {', '.join(f'{each:.0f}' for each in came_to)} |"
+        row += f"| {', '.join(f'{each:.0f}' for each in averages)} |"
         listed.setdefault(task["group"], []).append(row)
     parts = [
         "# The families", "", "Every task that comes with Driftworld, by name in each command, in Python, and as a Gymnasium id",
@@ -243,8 +243,8 @@ def pages(command: str, docs: Path = ROOT / "docs") -> None:
         parts += [f"## {group.capitalize()}", "", "| family | what is to be done | variants | random | planner | PPO |", "|---|---|--:|--:|--:|--:|", *rows, ""]
     (docs / "families.md").write_text("\n".join(parts), encoding="utf-8")
     lines = [line for line in (ROOT / "docs/SUMMARY.md").read_text(encoding="utf-8").splitlines() if "](families/" not in line]
-    place = lines.index("- [The families](families.md)") + 1
-    lines[place:place] = [f"  - [{name}](families/{name}.md)" for name in tasks]
+    index = lines.index("- [The families](families.md)") + 1
+    lines[index:index] = [f"  - [{name}](families/{name}.md)" for name in tasks]
     (docs / "SUMMARY.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

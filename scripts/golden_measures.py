@@ -2,8 +2,8 @@
 
     python scripts/golden_measures.py
 
-Transcribes the computations of the programs named below as plain loops, and shares no code with
-driftworld.benchmark.measures. NumPy draws the lifetimes and the resamples; the measures use only Python's arithmetic.
+The measures transcribe the programs named below as plain loops of Python's arithmetic, and share no code with
+driftworld.benchmark.measures. NumPy only draws the lifetimes and the bootstrap samples.
 """
 
 from __future__ import annotations
@@ -27,54 +27,54 @@ def mean(values: List) -> float:
 
 
 def over_steps(curve: List, steps: List | None) -> List:
-    """The curve with one point for each step: the references evaluate on an even grid."""
+    """The curve with one point for each step, because the references evaluate on an even grid."""
     points: List = []
-    for place, value in enumerate(curve):
-        points += [value] * (1 if steps is None else int(steps[place]))
+    for index, value in enumerate(curve):
+        points += [value] * (1 if steps is None else int(steps[index]))
     return points
 
 
 # awarelab/continual_world, continualworld/results_processing/tables.py at 73f63bb4: calculate_data_at_the_end,
 # calculate_forgetting_individual, normalized_ft, BootstrapCI._apply_statistics. An evaluation represents the last five.
 def continual_world(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
-    """Performance and forgetting: means over tasks, then over seeds. Transfer: AUCs are first averaged over seeds."""
+    """Performance and forgetting are averaged over tasks, then over seeds; for transfer, AUCs are averaged over seeds first."""
     tasks, performance, forgetting, transfer = len(values[0][0]), [], [], []
     for matrix in values:
         performance.append(mean([matrix[tasks][i] for i in range(tasks)]))
         forgetting.append(mean([matrix[i + 1][i] - matrix[tasks][i] for i in range(tasks)]))
     for i in range(tasks):
         lengths = None if steps is None else steps[i]
-        here = mean([mean(over_steps(seed[i], lengths)) for seed in curves])
-        there = mean([mean(over_steps(seed[i], lengths)) for seed in alone])
-        transfer.append((here - there) / (1 - there))
+        sequential = mean([mean(over_steps(seed[i], lengths)) for seed in curves])
+        from_scratch = mean([mean(over_steps(seed[i], lengths)) for seed in alone])
+        transfer.append((sequential - from_scratch) / (1 - from_scratch))
     return {"performance": mean(performance), "forgetting": mean(forgetting), "transfer": mean(transfer)}
 
 
 # TTomilin/COOM, results/common.py at 79298011: calculate_performance, calculate_forgetting, calculate_transfer.
 # The mean over seeds comes first there (load_cl_data). One evaluation represents the whole time of a task there.
 def coom(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
-    """Performance: each task from its own learning on. Forgetting: all but the last task. Transfer: one curve for
-    all.
+    """Performance counts each task from its own training on, forgetting all tasks but the last. Transfer joins the curves
+    of all tasks.
     """
-    tasks, seen, lost = len(values[0][0]), [], []
+    tasks, seen, drops = len(values[0][0]), [], []
     for i in range(tasks):
         ends = [mean([matrix[k + 1][i] for matrix in values]) for k in range(tasks)]
         seen += [ends[k] for k in range(tasks) if k >= i]
         if i < tasks - 1:
-            lost.append(ends[i] - ends[tasks - 1])
+            drops.append(ends[i] - ends[tasks - 1])
 
     def joined(seed: List) -> float:
         return mean([x for i in range(tasks) for x in over_steps(seed[i], None if steps is None else steps[i])])
 
-    there = mean([joined(seed) for seed in alone])
-    transfer = mean([(joined(seed) - there) / (1 - there) for seed in curves])
-    return {"performance": mean(seen), "forgetting": mean(lost), "transfer": transfer}
+    from_scratch = mean([joined(seed) for seed in alone])
+    transfer = mean([(joined(seed) - from_scratch) / (1 - from_scratch) for seed in curves])
+    return {"performance": mean(seen), "forgetting": mean(drops), "transfer": transfer}
 
 
 # facebookresearch/GradientEpisodicMemory, metrics/metrics.py at 34c6b8e9: confusion_matrix, which divides by the number
 # of tasks; equations 2 to 4 of the paper (arXiv:1706.08840) divide BWT and FWT by one less.
 def gem(matrix: List) -> dict[str, float]:
-    """Accuracy, backward and forward transfer: the paper's, and the program's."""
+    """Accuracy, backward and forward transfer, as in the paper and as in the program."""
     baseline, result = matrix[0], matrix[1:]
     tasks = len(result)
     accuracy = mean(result[tasks - 1])
@@ -87,7 +87,7 @@ def gem(matrix: List) -> dict[str, float]:
 # AGI-Labs/continual_rl, continual_rl/utils/metrics.py at f2754bb2: compute_metrics, compute_forgetting_metric and
 # compute_forward_transfer_metric with USE_ISOLATED_*, get_rewards_for_region, plot_metrics (without its factor of 10).
 def cora(values: List) -> dict[str, Any]:
-    """Tables of forgetting and transfer: means over seeds; the mean of all entries of a seed, averaged over seeds."""
+    """Tables of forgetting and transfer, averaged over seeds, and the mean of all entries of a seed, averaged over seeds."""
     tasks = len(values[0][0])
     tables: dict[str, Any] = {name: [[None] * tasks for _ in range(tasks)] for name in ("forgetting", "transfer")}
     corners: dict[str, List] = {name: [[] for _ in values] for name in tables}
@@ -95,7 +95,7 @@ def cora(values: List) -> dict[str, Any]:
         scale = max(abs(row[i]) for matrix in values for row in matrix)
         found: dict[tuple[str, int], List] = {}
         for seed, matrix in enumerate(values):
-            # The evaluation after k tasks comes just before time k.
+            # The evaluation after k tasks is placed just before time k.
             points = [(max(k - 0.25, 0.0), row[i] / scale) for k, row in enumerate(matrix)]
 
             def last(low: float, high: float, points: List = points) -> float:
@@ -140,13 +140,13 @@ def iqm(values: List) -> float:
 def interval(table: List) -> List:
     """The bootstrap interval of the IQM of a table of seeds and tasks."""
     seeds, tasks = len(table), len(table[0])
-    drawn = np.random.default_rng(0).integers(seeds, size=(DRAWS, seeds, tasks)).tolist()
-    found = sorted(iqm([table[row[t]][t] for row in rows for t in range(tasks)]) for rows in drawn)
+    resamples = np.random.default_rng(0).integers(seeds, size=(DRAWS, seeds, tasks)).tolist()
+    found = sorted(iqm([table[row[t]][t] for row in rows for t in range(tasks)]) for rows in resamples)
     ends = []
     for percent in (2.5, 97.5):
-        place = percent / 100 * (DRAWS - 1)
-        low = math.floor(place)
-        ends.append(found[low] + (place - low) * (found[low + 1] - found[low]))
+        rank = percent / 100 * (DRAWS - 1)
+        low = math.floor(rank)
+        ends.append(found[low] + (rank - low) * (found[low + 1] - found[low]))
     return ends
 
 
@@ -173,11 +173,11 @@ def main() -> None:
     cases = []
     for number in range(CASES):
         case = draw(number)
-        values, lived = case["values"], (case["values"], case["curves"], case["alone"], case["steps"])
+        values, data = case["values"], (case["values"], case["curves"], case["alone"], case["steps"])
         ends = [matrix[-1] for matrix in values]
         case["golden"] = {
-            "continual_world": continual_world(*lived),
-            "coom": coom(*lived),
+            "continual_world": continual_world(*data),
+            "coom": coom(*data),
             "gem": [gem(matrix) for matrix in values],
             "cora": cora(values),
             "regret": regret(case["curves"][0], case["ceilings"]),

@@ -1,4 +1,4 @@
-"""Writes a network and its log-probabilities, for env/src/agents/network/tests.rs to compare with.
+"""Writes a network and its log-probabilities, which env/src/agents/network/tests.rs compares with its own.
 
     python scripts/golden_network.py
 
@@ -20,10 +20,10 @@ GOLDEN = Path(__file__).parents[1] / "env" / "tests" / "golden"
 
 
 class Small(PPO):
-    """PPO with a network of few, large weights."""
+    """PPO with a small network."""
 
     def make_network(self) -> PatchNetwork:
-        """A network in which every layer matters."""
+        """A network with large weights, so that every layer matters."""
         network = PatchNetwork(self.num_actions, self.size, width=4, hidden=8)
         for parameter in network.parameters():
             torch.nn.init.normal_(parameter, std=0.4)
@@ -31,7 +31,7 @@ class Small(PPO):
 
 
 def image(number: int) -> list[int]:
-    """Bytes of an image, generated as in the test."""
+    """The bytes of an image; the test generates the same."""
     return [(k * (7 + 2 * number) + k // 5) % 256 for k in range(SIZE * SIZE * 3)]
 
 

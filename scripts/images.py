@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 
-#: The sheet of a curriculum, world or task is named after its document.
+#: Documents with a sheet, which is named after the document.
 CURRICULA = ["reward", "state", "transition", "observation", "action", "blue_red_green"]
 WORLDS = [
     "maze",
@@ -42,7 +42,7 @@ TASKS = {
 ORDERED = "blue slim held long_held half modest poor penalty dusk red green slow wide stiff spheres waypoints huddle clearing interact near"
 
 
-def of(task: str, variants: str) -> str:
+def variants_of(task: str, variants: str) -> str:
     """The names of some variants of a task."""
     return " ".join(f"{task}#{variant}" for variant in variants.split())
 
@@ -51,7 +51,7 @@ def of(task: str, variants: str) -> str:
 IMAGES: dict[str, list[str]] = {
     "looks-sizes.png": ["render find_objects --view looks -o {}"],
     "models.png": ["assets show -o {}"],
-    "demo.png": [f"sheet {of('find_objects', 'blue red green dusk huddle penalty')} --seed 7 --size 200 -o {{}}"],
+    "demo.png": [f"sheet {variants_of('find_objects', 'blue red green dusk huddle penalty')} --seed 7 --size 200 -o {{}}"],
     "six-families.png": [
         (
             "sheet key_corridor#red maze#medium collect_health#four put_next#one lava_crossing#lava obstacle_course#crowded"
@@ -59,7 +59,7 @@ IMAGES: dict[str, list[str]] = {
         )
     ],
     "distances.png": ["demo -o {tmp}/demo"],
-    "order.png": [f"order {of('find_objects', ORDERED)} --order two-opt --start find_objects#blue --plot {{}}"],
+    "order.png": [f"order {variants_of('find_objects', ORDERED)} --order two-opt --start find_objects#blue --plot {{}}"],
     "distances-apart.png": [
         "vary find_objects#red --element S --distance 0.05 --name at_0.05 -o {tmp}/apart.json",
         "vary {tmp}/apart.json#red --parameters light --distance 0.2 --name at_0.2 -o {tmp}/apart.json --force",
@@ -69,19 +69,19 @@ IMAGES: dict[str, list[str]] = {
             " -o {tmp}/apart.json --force"
         ),
         "vary {tmp}/apart.json#red --element R --distance 1 --name unseen_1 -o {tmp}/apart.json --force",
-        f"sheet {of('{tmp}/apart.json', 'red at_0.05 at_0.2 at_1 at_3 unseen_1')} --seed 3 --size 150 -o {{}}",
+        f"sheet {variants_of('{tmp}/apart.json', 'red at_0.05 at_0.2 at_1 at_3 unseen_1')} --seed 3 --size 150 -o {{}}",
     ],
     "curriculum-timeline.png": [
         (
-            f"curriculum {of('find_objects', 'blue huddle wide clearing')} --probe state --start find_objects#blue --order outward"
+            f"curriculum {variants_of('find_objects', 'blue huddle wide clearing')} --probe state --start find_objects#blue --order outward"
             " --learn 100 --eval-episodes 10 --name timeline -o {tmp}/timeline.json --plot {}"
         )
     ],
     "curriculum-map.png": ["sheet --scenario examples/curricula/map.json --size 150 -o {}"],
-    "task-blue_red_green.png": [f"sheet {of('blue_red_green', 'a b c d')} --size 150 -o {{}}"],
+    "task-blue_red_green.png": [f"sheet {variants_of('blue_red_green', 'a b c d')} --size 150 -o {{}}"],
     "looks.png": [
         (
-            f"sheet {of('find_objects', 'huddle dusk')} examples/worlds/four_rooms.json#nine examples/worlds/key_corridor.json#closed"
+            f"sheet {variants_of('find_objects', 'huddle dusk')} examples/worlds/four_rooms.json#nine examples/worlds/key_corridor.json#closed"
             " --size 160 -o {}"
         )
     ],
@@ -93,7 +93,7 @@ IMAGES: dict[str, list[str]] = {
         for name in CURRICULA
     },
     **{f"world-{name}.png": [f"sheet examples/worlds/{name}.json --size 150 -o {{}}"] for name in WORLDS},
-    **{f"task-{name}.png": [f"sheet {of(name, variants)} --size 150 -o {{}}"] for name, variants in TASKS.items()},
+    **{f"task-{name}.png": [f"sheet {variants_of(name, variants)} --size 150 -o {{}}"] for name, variants in TASKS.items()},
 }
 
 

@@ -1,11 +1,11 @@
-"""Trains PPO in the first variant of each family: writes examples/families_learned.json, from which scripts/families.py
-draws curves.
+"""Trains PPO in the first variant of each family, and writes examples/families_learned.json, from which
+scripts/families.py draws curves.
 
     nice python scripts/learn_families.py [NAME]... [--seeds 3] [--jobs 2]
 
-For each seed: the mean reward of a decision's episode in ten equal parts of the training, and afterwards the mean
-reward and the success rate in 100 other worlds, with sampled actions. Memory families are also learned by recurrent
-PPO. Entries already in the file are not run again. Needs PyTorch.
+Records for each seed the mean reward of episodes in ten equal parts of the training, weighted by their decisions, and
+afterwards the mean reward and the success rate in 100 other worlds, with sampled actions. In the families of memory
+recurrent PPO is trained too. Entries already in the file are not run again. Needs PyTorch.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ SETTINGS: dict[str, dict[str, Any]] = {
 
 
 def learn(name: str, variant: str, learner: str, seed: int, scale: float) -> tuple[str, str, dict[str, Any]]:
-    """One seed of a learner in one family."""
+    """Trains one seed of a learner in one family; returns the family, the learner, and the results."""
     import torch
     from driftworld.learners import PPO, RecurrentPPO, Settings
 
@@ -47,11 +47,11 @@ def learn(name: str, variant: str, learner: str, seed: int, scale: float) -> tup
         {"type": "evaluation", "regimes": [{"task": name, "variant": variant, "count": WORLDS, "seed": 2 * seed + 1}]},
     ]
     plan = Curriculum.from_dict({"version": 1, "name": "one_family", "blocks": blocks})
-    made = {"ppo": PPO, "recurrent_ppo": RecurrentPPO}[learner]
-    agent = made(len(ACTIONS), NUM_ENVS, seed=seed, size=32, settings=Settings(**SETTINGS[learner], reward_scale=scale))
-    with tempfile.TemporaryDirectory() as place:
-        plan.run_vector(agent, Path(place) / "log", num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)
-        columns = read_log(Path(place) / "log").columns
+    learner_class = {"ppo": PPO, "recurrent_ppo": RecurrentPPO}[learner]
+    agent = learner_class(len(ACTIONS), NUM_ENVS, seed=seed, size=32, settings=Settings(**SETTINGS[learner], reward_scale=scale))
+    with tempfile.TemporaryDirectory() as folder:
+        plan.run_vector(agent, Path(folder) / "log", num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)
+        columns = read_log(Path(folder) / "log").columns
     learning = columns["block_type"] == "train"
     rewards, steps = columns["reward"][learning].astype(float), columns["episode_step_count"][learning].astype(float)
     part = np.minimum((np.cumsum(steps) - steps / 2) * PARTS / steps.sum(), PARTS - 1).astype(int)
@@ -64,24 +64,24 @@ def learn(name: str, variant: str, learner: str, seed: int, scale: float) -> tup
 
 
 def main() -> None:
-    """Runs everything that is missing from the file."""
+    """Trains the learners and seeds that the file lacks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--jobs", type=int, default=2)
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     measured = json.loads(MEASURED.read_text(encoding="utf-8"))
     learned = json.loads(LEARNED.read_text(encoding="utf-8")) if LEARNED.is_file() else {}
     memory = driftworld.task_groups()["memory"]
-    wanted = []
-    for seed in range(given.seeds):
-        for name in given.names or measured:
+    pending = []
+    for seed in range(arguments.seeds):
+        for name in arguments.names or measured:
             for learner in ["ppo", "recurrent_ppo"] if name in memory else ["ppo"]:
                 if all(run["seed"] != seed for run in learned.get(name, {}).get(learner, [])):
                     variant, scale = next(iter(measured[name].items()))
-                    wanted.append((name, variant, learner, seed, 2.0 / (scale["planner"] - scale["random"])))
-    with ProcessPoolExecutor(given.jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
-        for done in as_completed([pool.submit(learn, *each) for each in wanted]):
+                    pending.append((name, variant, learner, seed, 2.0 / (scale["planner"] - scale["random"])))
+    with ProcessPoolExecutor(arguments.jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        for done in as_completed([pool.submit(learn, *each) for each in pending]):
             name, learner, found = done.result()
             runs = [*learned.get(name, {}).get(learner, []), found]
             learned.setdefault(name, {})[learner] = sorted(runs, key=lambda run: run["seed"])

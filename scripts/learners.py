@@ -23,7 +23,7 @@ OPTIONS: dict[str, Any] = {
     "modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
 }  # fmt: skip
 #: Required arguments of learners.
-NEEDED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions": 10_000}}
+REQUIRED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions": 10_000}}
 
 
 def main() -> None:
@@ -33,7 +33,7 @@ def main() -> None:
     count = EXPERIENCES if "--quick" not in sys.argv else NUM_ENVS
     print("| learner | µs per decision | acting and learning | environments and loop |\n|---|--:|--:|--:|")
     for name in names or ["PPO"]:
-        learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **NEEDED.get(name, {}))
+        learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **REQUIRED.get(name, {}))
         marks: list[tuple[float, float, int]] = []
         for variant in ("red", "huddle"):
             block = {
@@ -44,9 +44,9 @@ def main() -> None:
             marks.append((time.process_time(), learner.seconds, learner.decisions))
             plan.run_vector(learner, num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)
         marks.append((time.process_time(), learner.seconds, learner.decisions))
-        seconds, own_seconds, decisions = (after - before for before, after in zip(marks[1], marks[2], strict=True))
-        whole, own = 1e6 * seconds / decisions, 1e6 * own_seconds / decisions
-        print(f"| {learner.name} | {whole:.0f} | {own:.0f} | {whole - own:.0f} |", flush=True)
+        seconds, learner_seconds, decisions = (after - before for before, after in zip(marks[1], marks[2], strict=True))
+        total, learner_share = 1e6 * seconds / decisions, 1e6 * learner_seconds / decisions
+        print(f"| {learner.name} | {total:.0f} | {learner_share:.0f} | {total - learner_share:.0f} |", flush=True)
 
 
 if __name__ == "__main__":

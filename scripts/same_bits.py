@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Checks that two builds of `driftworld` give the same worlds, distances, frames, logs and metrics, to the byte.
+"""Checks that two builds of `driftworld` give the same worlds, distances, frames, logs and metrics, byte for byte.
 
     scripts/same_bits.py record target/release/driftworld before.json     # with the build before a change
     scripts/same_bits.py compare target/release/driftworld before.json    # with the build after it
 
-Runs a fixed set of commands and stores the SHA-256 of everything each one prints or writes. `compare` exits with 1 and
-names the commands whose bytes differ. A command that the newer build refuses with "removed in 0.3" is listed
+Runs a fixed set of commands and stores the SHA-256 of everything that each one prints or writes. `compare` exits with 1
+and names the commands with different bytes. A command that the newer build refuses with "removed in 0.3" is listed
 separately. `--only GROUP` runs one group: worlds, distances, frames, logs, scores or tools. `--full` compares 20 worlds
 by every measure; without it the slow measures get 2. `--variants N` takes the first N variants of each task instead of
 20: with 2 it runs for some minutes, with 20 for an hour. Logs of other programs are also scored if the folder named by
@@ -47,19 +47,19 @@ SLOW_MEASURES = ["pictures", "pictures:whole", "pictures:structure", "dynamics",
 MODALITIES = ["rgb", "depth", "segmentation"]
 
 
-def variants(binary: str, most: int) -> list[str]:
+def variants(binary: str, max_variants: int) -> list[str]:
     """The first `most` variants of each built-in task and of each example world."""
     found = []
     for task in [*BUILT_IN, *(str(ROOT / "examples/worlds" / f"{name}.json") for name in WORLDS)]:
         shown = json.loads(
             subprocess.run([binary, "tasks", "show", task, "--json"], capture_output=True, check=True).stdout
         )
-        names = list(shown["variants"])[:most]
+        names = list(shown["variants"])[:max_variants]
         found += [f"{task}#{name}" for name in names]
     return found
 
 
-def commands(binary: str, most: int, full: bool) -> list[tuple[str, str, list[list[str]]]]:
+def commands(binary: str, max_variants: int, full: bool) -> list[tuple[str, str, list[list[str]]]]:
     """The commands to run: (group, name, commands that run one after the other in one empty folder)."""
     jobs = []
 
@@ -67,7 +67,7 @@ def commands(binary: str, most: int, full: bool) -> list[tuple[str, str, list[li
         jobs.append((group, name.replace(str(ROOT) + "/", ""), list(steps)))
 
     first_of = {}
-    for variant in variants(binary, most):
+    for variant in variants(binary, max_variants):
         task = variant.split("#")[0]
         first = first_of.setdefault(task, variant)
         add("worlds", variant, ["sample", variant, "--count", "20", "--seed", "7", "--jsonl"])
@@ -194,9 +194,9 @@ def main() -> int:
     parser.add_argument("--only", metavar="GROUP")
     parser.add_argument("--variants", type=int, default=20, metavar="N")
     parser.add_argument("--full", action="store_true")
-    given = parser.parse_args()
-    binary = str(given.binary.resolve())
-    jobs = [job for job in commands(binary, given.variants, given.full) if given.only in (None, job[0])]
+    arguments = parser.parse_args()
+    binary = str(arguments.binary.resolve())
+    jobs = [job for job in commands(binary, arguments.variants, arguments.full) if arguments.only in (None, job[0])]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = pool.map(lambda job: digests(binary, job[2]), jobs)
         found = {f"{group}: {name}": result for (group, name, _), result in zip(jobs, results)}
@@ -204,12 +204,12 @@ def main() -> int:
     failed = [
         name for name, result in found.items() if any(k.startswith("exit") and v not in "0" for k, v in result.items())
     ]
-    if given.action == "record":
-        given.file.write_text(json.dumps(found, indent=1) + "\n")
+    if arguments.action == "record":
+        arguments.file.write_text(json.dumps(found, indent=1) + "\n")
         print(f"recorded {counts}; commands that ended with an error: {len(failed)}", *failed, sep="\n  ")
         return 0
-    before = json.loads(given.file.read_text())
-    missing = [name for name in before if name not in found and given.only in (None, name.split(":")[0])]
+    before = json.loads(arguments.file.read_text())
+    missing = [name for name in before if name not in found and arguments.only in (None, name.split(":")[0])]
     removed = [name for name, result in found.items() if "removed" in result]
     differ = [name for name, result in found.items() if name not in removed and result != before.get(name)]
     print(f"compared {counts}; removed: {len(removed)}, missing: {len(missing)}, different: {len(differ)}")

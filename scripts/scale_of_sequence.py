@@ -1,10 +1,10 @@
-"""Measures a sequence of driftworld.benchmark, for "scale" and "frozen" in its JSON file.
+"""Measures the values of "scale" and "frozen" for the JSON file of a sequence of driftworld.benchmark.
 
     python scripts/scale_of_sequence.py mixed target/release/driftworld
 
-0 is the reward of random rows of the action table, 1 that of the planner, which knows the map and acts in every time
-step: 500 worlds each, which no lifetime uses. A planner that holds its actions as long as the learners do is not a
-ceiling: they reached 113 % of it in moving_object#fast.
+The scale's 0 is the reward of random rows of the action table, and its 1 that of the planner, which knows the map and
+acts in every time step; both in 500 worlds that no lifetime uses. A planner that holds its actions as long as the
+learners do would not be a ceiling: they reached 113 % of it in moving_object#fast.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def random(task: str, sequence: Sequence) -> float:
 def planner(task: str, command: str) -> float:
     """Mean reward of the planner."""
     words = [command, "scales", task, "--worlds", str(WORLDS), "--seed", str(SEED), "--json"]
-    said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
-    (scale,) = said["scales"].values()
+    output = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    (scale,) = output["scales"].values()
     return float(scale["ceiling"])
 
 

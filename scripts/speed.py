@@ -1,5 +1,4 @@
-"""Draws docs/images/speed.svg, and prints its table: steps per second of Driftworld and of its peers, measured in one
-run.
+"""Draws docs/images/speed.svg and prints its table, with steps per second of Driftworld and its peers from one run.
 
     taskset -c 0 target/release/driftworld bench env --json | python scripts/speed.py PEERS
 
@@ -26,7 +25,7 @@ LEFT, WIDTH, ROW = 330, 860, 30
 
 
 def main() -> None:
-    """Reads both, prints the table, and draws the figure."""
+    """Reads the figures of Driftworld and its peers, prints the table, and draws the image."""
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     peers = [line.split("\t") for line in Path(sys.argv[1]).read_text(encoding="utf-8").splitlines() if line]
@@ -34,11 +33,11 @@ def main() -> None:
     bars = [(who, what, float(steps)) for who, what, steps in peers]
     bars += [("Driftworld", what, figures[key]) for key, what in OURS.items() if key in figures]
     print("| environment | observation | steps a second on one core |\n|---|---|---|")
-    most = max(steps for _, _, steps in bars)
+    fastest = max(steps for _, _, steps in bars)
     shapes = []
     for row, (who, what, steps) in enumerate(bars):
         print(f"| {who} | {what} | {steps:,.0f} |")
-        top, length = 38 + ROW * row, max(steps / most * (WIDTH - LEFT - 90), 1)
+        top, length = 38 + ROW * row, max(steps / fastest * (WIDTH - LEFT - 90), 1)
         color = "#2a6f97" if who == "Driftworld" else "#a5a58d"
         shapes += [
             f'<text x="{LEFT - 8}" y="{top + 17}" text-anchor="end" fill="#222222">{who}: {what}</text>',

@@ -1,4 +1,4 @@
-"""The families' pages match the output of scripts/families.py, and a few worlds confirm the measurements."""
+"""The families' pages match the output of scripts/families.py, and some measurements are reproduced."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
     """The script, with the command run in this process."""
     module = script("families")
 
-    def said(_: str, *words: str) -> Any:
+    def run_json(_: str, *words: str) -> Any:
         assert _native.main(["driftworld", *words, "--json"]) in (0, 1)
         return json.loads(capfd.readouterr().out)
 
-    monkeypatch.setattr(module, "said", said)
+    monkeypatch.setattr(module, "run_json", run_json)
     return module
 
 
-def test_pages_are_made_from_the_measurements(families: ModuleType, tmp_path: Path) -> None:
+def test_pages_match_the_measurements(families: ModuleType, tmp_path: Path) -> None:
     families.pages("driftworld", tmp_path)
-    made = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.*"))
-    assert len(made) > 80
-    for path in made:
+    written = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.*"))
+    assert len(written) > 80
+    for path in written:
         assert (tmp_path / path).read_text(encoding="utf-8") == (ROOT / "docs" / path).read_text(encoding="utf-8"), path
 
 
@@ -55,7 +55,7 @@ def test_every_variant_is_measured() -> None:
 def test_measurements_of_a_family_are_reproducible(families: ModuleType, name: str) -> None:
     measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))[name]
     first = next(iter(measured))
-    scales = families.said("driftworld", "scales", f"{name}#{first}", "--worlds", str(families.WORLDS))["scales"]
+    scales = families.run_json("driftworld", "scales", f"{name}#{first}", "--worlds", str(families.WORLDS))["scales"]
     (scale,) = scales.values()
     assert round(scale["agents"]["random"]["mean"], 2) == measured[first]["random"]
     assert round(scale["agents"]["onrails"]["mean"], 2) == measured[first]["planner"]
