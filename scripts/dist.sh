@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Makes a wheel and an archive of the programs for each target, with checksums, in target/packages. Nothing is uploaded.
+# Builds a wheel and an archive of the programs for each target, with checksums, in target/packages. Nothing is uploaded.
 #
 #     scripts/dist.sh [TARGET]...     # by default x86_64-unknown-linux-gnu and aarch64-unknown-linux-gnu
 #
-# zig links them, so that they run with glibc 2.28 and later whatever this machine has. The page of the workbench wants Node.js.
+# They are linked by zig, so they run with glibc 2.28 and later, whatever this machine has. The page of the workbench needs Node.js.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 known=(x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu)
@@ -23,12 +23,12 @@ python3 -m venv "$tools"
 export PATH="$PWD/$tools/bin:$PATH"
 export CARGO_TARGET_DIR="$PWD/target"
 mkdir -p "$out"
-# Every program has the page of the workbench in it.
+# The page of the workbench is embedded into every program.
 cargo xtask studio
 export DRIFTWORLD_STUDIO="$PWD/target/studio"
 version="$(cargo pkgid --package driftworld)" && version="${version##*[#@]}"
 for target; do
-    # For Python 3.10 and later, with every feature and the command.
+    # The wheel is for Python 3.10 and later, and has all features and the command.
     maturin build --manifest-path python/Cargo.toml --profile dist --features full --zig --compatibility manylinux_2_28 \
         --target "$target" --out "$out"
     cargo zigbuild --profile dist --target "$target.2.28" --package driftworld --features full

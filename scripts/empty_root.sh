@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Tries a wheel, and an archive if one is given, where nothing is: a Debian with Python alone, without compiler, display and network.
+# Tests a wheel, and optionally an archive, in a minimal Debian that has only Python: no compiler, no display, no network.
 #
-#     scripts/empty_root.sh WHEEL [ARCHIVE]      # as root; the architecture is that of their names
+#     scripts/empty_root.sh WHEEL [ARCHIVE]      # run as root; the file names determine the architecture
 #
-# The system is made by debootstrap in target/empty-root-ARCHITECTURE, or in the folder that DRIFTWORLD_EMPTY_ROOT names, and kept.
-# One of another architecture runs under qemu-user-static (Debian's package, with binfmt_misc mounted). Prints the seconds of each step.
+# debootstrap creates the system in target/empty-root-ARCHITECTURE, or in the folder DRIFTWORLD_EMPTY_ROOT; it is kept for later runs.
+# A different architecture needs qemu-user-static (Debian's package, with binfmt_misc mounted). Prints the seconds of each step.
 set -euo pipefail
 wheel="$(realpath "$1")"
 case "$wheel" in
@@ -19,7 +19,7 @@ if [ ! -e "$root/made" ]; then
     touch "$root/made"
 fi
 rm -rf "$root/try" && mkdir -p "$root/try/wheels"
-# What pip would fetch: the two packages that the wheel needs, for the Python of that Debian.
+# Downloads what pip would fetch: the wheel's two dependencies and theirs, for the Python of that Debian.
 platforms=()
 for tag in 2_28 2_27 2_17; do platforms+=(--platform "manylinux_${tag}_$machine"); done
 python3 -m pip download --quiet --only-binary :all: --python-version 3.11 "${platforms[@]}" --dest "$root/try/wheels" "numpy<3" gymnasium

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # scripts/fuzz.sh SECONDS [TARGET]...
-# Runs libFuzzer for so many seconds on each target, or on those that are named: the laws in fuzz/src/, which the tests check
-# on the seeds, too. Wants x86-64 Linux and a nightly Rust (rustup toolchain install nightly).
+# Runs libFuzzer for SECONDS on each of the named targets, or on all. The targets check the laws in fuzz/src/, which the tests
+# check on the seeds. Needs x86-64 Linux and a nightly Rust (rustup toolchain install nightly).
 #
-# Inputs that took a new way stay in fuzz/corpus/, with which the next call begins; those that broke a law, in fuzz/artifacts/.
+# Inputs that reach new code are kept in fuzz/corpus/, where the next run starts; inputs that break a law are in fuzz/artifacts/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../fuzz"
 seconds="${1:?usage: scripts/fuzz.sh SECONDS [TARGET]...}"
 shift
 [ "$#" -gt 0 ] || set -- $(ls seeds)
 
-# Coverage of the ways that a run takes, as cargo-fuzz asks it of the compiler.
+# The compiler flags with which cargo-fuzz measures coverage.
 machine=x86_64-unknown-linux-gnu
 export RUSTFLAGS="--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \

@@ -3,8 +3,8 @@
 #
 #     scripts/rebuilds.sh [TARGET]
 #
-# That happens if two of our crates request different features of one, and makes everybody wait for it twice;
-# `features/Cargo.toml` unifies them. In a folder that was not empty, the second build may be an old one.
+# This happens if two of our crates request different features of a crate, and makes everyone wait for it twice;
+# `features/Cargo.toml` unifies them. In a folder that was not empty before the build, the second copy may be an old one.
 set -eu
 target=${1:-target}
 found=0

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # scripts/soundness.sh [miri|address|threads]...
-# Tests under tools that see what unsafe and foreign code do to memory, on x86-64 Linux; half an hour for all three. Wants a
-# nightly Rust: rustup toolchain install nightly --component miri --component rust-src
+# Runs tests under tools that detect memory errors of unsafe and foreign code, on x86-64 Linux; all three take half an hour.
+# Needs a nightly Rust: rustup toolchain install nightly --component miri --component rust-src
 #
-# Left out of miri: AVX-512, whose instructions it does not know, and meshopt's C++ (address runs both); whole pictures, worlds
-# and batches, which take it minutes each (address and threads run them); Python, whose one view is read-only. Left out of
-# address: leaks, for nothing frees by hand and the test harness leaks. Left out of threads: what starts none.
+# miri does not run AVX-512, whose instructions it does not know, and meshopt's C++ (address runs both), whole pictures, worlds
+# and batches, which would take minutes each (address and threads run them), and Python, whose only view is read-only. address
+# ignores leaks, because nothing is freed by hand and the test harness leaks. threads runs only code that starts threads.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ "$#" -gt 0 ] || set -- miri address threads
@@ -26,7 +26,7 @@ for tool in "$@"; do
             tested miri driftworld-env --lib -- agents::grid agents::script:: assets::blocks
             ;;
         address)
-            # The C++ of meshopt is watched, too. Two of its tables are private to their files and look as if they stood twice.
+            # meshopt's C++ is checked too. Two of its tables are private to their files, and would be reported as defined twice.
             export RUSTFLAGS=-Zsanitizer=address CXXFLAGS="-fsanitize=address -fno-omit-frame-pointer" PROPTEST_CASES=64
             export ASAN_OPTIONS=detect_leaks=0:detect_odr_violation=0
             tested address driftworld-env --features gltf --lib -- assets

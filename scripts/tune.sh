@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tunes the learners of the sequence `mixed` in validation worlds, two seeds a value; what is finished is not run again.
+# Tunes the learners of the sequence `mixed` in validation worlds, with two seeds per value. Finished runs are not repeated.
 #     scripts/tune.sh RESULTS [--jobs N]
 set -eu
 results=$1; shift
