@@ -1,4 +1,4 @@
-"""Shared fixtures: the ids and variants, and small task and world files."""
+"""Shared fixtures: environment ids, variants, and small task and world files."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "env_id" in metafunc.fixturenames:
         metafunc.parametrize("env_id", TASKS)
     if "task_variant" in metafunc.fixturenames:
-        every = [
+        task_variants = [
             (env_id, name) for env_id, task in TASKS.items() for name in driftworld.TaskSpec.load(task).variant_names()
         ]
-        metafunc.parametrize("task_variant", every, ids=[f"{TASKS[env_id]}#{name}" for env_id, name in every])
+        metafunc.parametrize("task_variant", task_variants, ids=[f"{TASKS[env_id]}#{name}" for env_id, name in task_variants])
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Gymnasium's own vector environments, for comparison with Driftworld's."""
+"""A helper for comparisons with Gymnasium's own vector environments."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import driftworld
 
 
 def spread(envs: Any) -> Any:
-    """Makes a reset with one seed spread it as Driftworld does; Gymnasium's own environments add 0, 1, 2 and so on."""
+    """Makes resets with one seed derive the seeds of environments as Driftworld does; Gymnasium adds 0, 1, 2 and so on."""
     reset = envs.reset
 
     def reset_spread(*, seed: Any = None, options: dict[str, Any] | None = None) -> Any:

@@ -1,4 +1,4 @@
-"""A new user's first steps, run by an interpreter with nothing but `pip install ./python`.
+"""Runs a new user's first steps, in an environment with nothing but `pip install ./python`.
 
 Runs the first Python block of docs/python.md unchanged, then the command. `cargo xtask test` starts it and shows its output.
 The blocks of all pages, README.md among them, are run by `test_readme.py`.
@@ -24,9 +24,9 @@ def run(arguments: list[str], folder: Path) -> None:
     subprocess.run(arguments, cwd=folder, check=True, timeout=300)
 
 
-def optional(command: str, folder: Path) -> None:
-    """Checks that a feature with a long build works in wheels that include it, and is otherwise refused with the name
-    of the feature.
+def check_optional_features(command: str, folder: Path) -> None:
+    """Checks that each feature with a long build works in wheels that include it, and that other wheels refuse it with the
+    name of the feature.
     """
     report = json.loads(subprocess.run([command, "doctor", "--json"], capture_output=True, check=True, timeout=300).stdout)
     lighthouse = ROOT / "examples" / "assets" / "lighthouse.gltf"
@@ -47,10 +47,10 @@ def optional(command: str, folder: Path) -> None:
 
 def main() -> None:
     """Runs all steps."""
-    brought = {distribution.metadata["Name"].lower() for distribution in importlib.metadata.distributions()}
-    unexpected = brought & {"torch", "pandas", "pygame", "pytest", "scipy", "matplotlib"}
-    if "driftworld" not in brought or unexpected:
-        sys.exit(f"newcomer: found {sorted(brought)}, expected driftworld and little more: make an empty environment")
+    installed = {distribution.metadata["Name"].lower() for distribution in importlib.metadata.distributions()}
+    unexpected = installed & {"torch", "pandas", "pygame", "pytest", "scipy", "matplotlib"}
+    if "driftworld" not in installed or unexpected:
+        sys.exit(f"newcomer: found {sorted(installed)}, expected driftworld and little more: make an empty environment")
     block = re.search(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     if not block:
         sys.exit(f"newcomer: found no block of Python in {GUIDE}, expected the example that users begin with")
@@ -60,7 +60,7 @@ def main() -> None:
         run([sys.executable, "-W", "error", "-c", block[1]], folder)
         run([command, "--version"], folder)
         run([sys.executable, "-m", "driftworld", "--version"], folder)
-        optional(command, folder)
+        check_optional_features(command, folder)
         run([command, "demo"], folder)
         if not any(folder.iterdir()):
             sys.exit("newcomer: `driftworld demo` wrote nothing, expected its folder")

@@ -1,4 +1,4 @@
-"""Shared by the tests of curricula and lifetimes: a small curriculum with all kinds of blocks, two agents, and logs as
+"""Helpers for tests of curricula and lifetimes: a small curriculum with all kinds of blocks, two agents, and logs as
 text.
 """
 
@@ -13,7 +13,7 @@ from driftworld import Curriculum, Transition, read_log
 
 
 class Circler:
-    """Walks in circles, and stores its rewards."""
+    """Walks in circles, and records its calls and rewards."""
 
     name = "circler"
 
@@ -39,17 +39,17 @@ class Circler:
 
 
 class Pupil(Circler):
-    """An agent that can be saved, and whose every action depends on everything that it has learned."""
+    """Can be saved. Each action depends on everything learned so far."""
 
     name = "pupil"
 
     def __init__(self) -> None:
         super().__init__()
         self.knowledge = 0.0
-        self.chance = 0
+        self.seed = 0
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        turn = (self.knowledge * 37 + self.chance % 1000) % 180 - 90
+        turn = (self.knowledge * 37 + self.seed % 1000) % 180 - 90
         return np.array([8, turn, 0], dtype=np.float32)
 
     def learn(self, transition: Transition) -> None:
@@ -58,7 +58,7 @@ class Pupil(Circler):
 
     def begin(self, label: str | None, seed: int) -> None:
         super().begin(label, seed)
-        self.chance = seed
+        self.seed = seed
 
     def save(self, path: Path) -> None:
         path.mkdir()
@@ -68,21 +68,21 @@ class Pupil(Circler):
         self.knowledge = json.loads((path / "knowledge.json").read_text(encoding="utf-8"))
 
 
-#: Small and fast, with a limit of steps.
+#: Options that make steps cheap.
 SMALL: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "continuous"}
 
 
 def small(max_steps: int = 40) -> Curriculum:
-    """Blocks of all kinds: before deployment, a drift, evaluations."""
+    """A curriculum with all kinds of blocks: pre-deployment, learning with and without drift, evaluation."""
 
-    def regime(variant: str, count: int, seed: int, **more: Any) -> dict[str, Any]:
+    def regime(variant: str, count: int, seed: int, **extra: Any) -> dict[str, Any]:
         return {
             "task": "find_objects",
             "variant": variant,
             "count": count,
             "seed": seed,
             "max_steps": max_steps,
-            **more,
+            **extra,
         }
 
     def evaluation() -> dict[str, Any]:
@@ -104,6 +104,6 @@ def small(max_steps: int = 40) -> Curriculum:
 
 
 def rows(log: Path, columns: list[str] | None = None) -> dict[str, list[str]]:
-    """A log's columns as text, which distinguishes numbers to the last bit, and NaN from missing values."""
+    """A log's columns as text, so that numbers are compared bit for bit, and NaN differs from missing values."""
     read = read_log(log).columns
     return {name: [repr(cell) for cell in read[name].tolist()] for name in columns or sorted(set(read) - {"timestamp"})}

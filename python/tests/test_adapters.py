@@ -1,4 +1,4 @@
-"""Tests of the adapters, with the other libraries themselves where they are installed."""
+"""Tests of the adapters, with the real libraries where they are installed."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def test_missing_library_error_says_what_to_install(
         importlib.import_module(f"driftworld.adapters.{name}")
 
 
-def in_a_loop(seed: int, num_envs: int, **options: Any) -> Any:
+def dummy_vec_env(seed: int, num_envs: int, **options: Any) -> Any:
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     envs = DummyVecEnv([lambda: gym.make(FIND, **options)] * num_envs)
-    # The library's own seeding adds 0, 1, 2 and so on.
+    # The library itself would add 0, 1, 2 and so on to the seed.
     envs._seeds = list(driftworld.spread_seeds(seed, num_envs))
     return envs
 
@@ -54,15 +54,15 @@ def test_sb3_vector_environment_matches_its_own_loop(modalities: Any) -> None:
 
     options = {**SMALL, "modalities": modalities}
     ours = DriftworldVecEnv(FIND, 3, max_episode_steps=5, **options)
-    theirs = in_a_loop(4, 3, max_episode_steps=5, **options)
+    theirs = dummy_vec_env(4, 3, max_episode_steps=5, **options)
     ours.seed(4)
     assert first_difference(ours.reset(), theirs.reset()) is None
     assert first_difference(ours.reset_infos, theirs.reset_infos) is None
-    chance = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     for number in range(14):
-        actions = chance.integers(0, theirs.action_space.n, 3)
+        actions = rng.integers(0, theirs.action_space.n, 3)
         left, right = ours.step(actions), theirs.step(actions)
-        # Gymnasium's own limit of steps sets this; here the limit is the world's.
+        # Gymnasium's own step limit sets this entry; here the world has the limit.
         for info in right[3]:
             info.setdefault("TimeLimit.truncated", False)
         assert first_difference(left, right, f"step {number}") is None
@@ -112,14 +112,14 @@ def test_sb3_options_apply_to_all_or_to_each() -> None:
     envs.close()
 
 
-def both(num_envs: int = 3, **options: Any) -> tuple[Any, Any]:
+def stepped_pair(num_envs: int = 3, **options: Any) -> tuple[Any, Any]:
     """The adapter, and Stable-Baselines3's loop over single environments, after three steps with equal seeds and
     actions.
     """
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
     options = {**SMALL, "info": "full", "render_mode": "rgb_array", "render_size": (24, 32), "max_steps": 9, **options}
-    ours, theirs = DriftworldVecEnv(FIND, num_envs, **options), in_a_loop(4, num_envs, **options)
+    ours, theirs = DriftworldVecEnv(FIND, num_envs, **options), dummy_vec_env(4, num_envs, **options)
     ours.seed(4)
     for envs in (ours, theirs):
         envs.reset()
@@ -152,7 +152,7 @@ CALLS: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = [
 ATTRIBUTES = ["action_space", "observation_space", "metadata", "render_mode", "np_random_seed"]
 
 
-def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
+def result_or_error(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
     """A method's results; for an error, its type."""
     try:
         return envs.env_method(method, *args, **kwargs)
@@ -164,12 +164,12 @@ def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
 @pytest.mark.parametrize("indices", [None, 1, -1, [0], [2, 0], [], range(3), [1, 1]], ids=str)
 def test_sb3_contract_matches_single_environments(indices: Any) -> None:
     pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
-    ours, theirs = both()
+    ours, theirs = stepped_pair()
     for name, args, kwargs in CALLS:
-        found = [answers(envs, name, *args, indices=indices, **kwargs) for envs in (ours, theirs)]
+        found = [result_or_error(envs, name, *args, indices=indices, **kwargs) for envs in (ours, theirs)]
         assert first_difference(*found, f"{name}{args}{kwargs}") is None
-        assert first_difference(*[answers(envs, "state") for envs in (ours, theirs)], f"all after {name}") is None
-        assert first_difference(*[answers(envs, "recording") for envs in (ours, theirs)], f"all after {name}") is None
+        assert first_difference(*[result_or_error(envs, "state") for envs in (ours, theirs)], f"all after {name}") is None
+        assert first_difference(*[result_or_error(envs, "recording") for envs in (ours, theirs)], f"all after {name}") is None
         steps = [envs.step(np.arange(3))[:3] for envs in (ours, theirs)]
         assert first_difference(*steps, f"the step after {name}") is None
     for name in ATTRIBUTES:
@@ -198,7 +198,7 @@ def test_sb3_contract_matches_single_environments(indices: Any) -> None:
 @pytest.mark.learners
 def test_sb3_refuses_calls_without_effect_or_for_some_environments_only() -> None:
     pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
-    ours, _ = both()
+    ours, _ = stepped_pair()
     for option in ("frame_skip", "variant", "max_steps", "modalities", "size", "actions", "task", "render_mode", "drift"):
         for indices in (None, [0]):
             with pytest.raises(ValueError, match=rf"set_attr\('{option}'\): .*set_options"):
@@ -237,8 +237,8 @@ def test_sb3_learns_on_it(algorithm: str, tmp_path: Path) -> None:
     from stable_baselines3.common.evaluation import evaluate_policy
 
     envs = make_vec_env(FIND, num_envs=2, seed=0, max_episode_steps=12, monitor_dir=str(tmp_path / "monitor"), **SMALL)
-    more = {"n_steps": 16, "batch_size": 16} if algorithm == "PPO" else {"buffer_size": 200, "learning_starts": 16}
-    model = getattr(sb3, algorithm)("CnnPolicy", envs, seed=0, device="cpu", **more)
+    options = {"n_steps": 16, "batch_size": 16} if algorithm == "PPO" else {"buffer_size": 200, "learning_starts": 16}
+    model = getattr(sb3, algorithm)("CnnPolicy", envs, seed=0, device="cpu", **options)
     before = [parameter.detach().clone() for parameter in model.policy.parameters()]
     model.learn(64)
     assert any(not old.equal(new) for old, new in zip(before, model.policy.parameters(), strict=True))
@@ -273,11 +273,11 @@ def test_torch_takes_observations_without_copying() -> None:
     tensor = torch.from_dlpack(observations["rgb"])
     before = tensor.clone()
     envs.step(np.ones(envs.action_space.shape, dtype=np.float32))
-    assert tensor.equal(before), "the step wrote into what was handed out"
+    assert tensor.equal(before), "the step wrote into an array that was returned before"
 
 
 @pytest.mark.learners
-# In a checkout that is on the path but not installed, Minari does not find the package.
+# Minari does not find the package in a checkout that is on the path but not installed.
 @pytest.mark.filterwarnings("ignore:Package driftworld is not installed:UserWarning")
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
 def test_minari_reads_back_recorded_episodes(modalities: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -309,7 +309,7 @@ def test_minari_reads_back_recorded_episodes(modalities: Any, tmp_path: Path, mo
         assert sum(episode.rewards) == pytest.approx(recorded["episode_return"])
 
 
-class StandIn:
+class PufferStandIn:
     """A stand-in for PufferLib's `PufferEnv`, following its documentation: it checks the class's attributes and
     provides buffers.
     """
@@ -336,7 +336,7 @@ def puffer(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The adapter with PufferLib itself if it is installed, else with a stand-in that follows its documentation."""
     if importlib.util.find_spec("pufferlib") is None:
         library = types.ModuleType("pufferlib")
-        library.PufferEnv = StandIn  # type: ignore[attr-defined]
+        library.PufferEnv = PufferStandIn  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, "pufferlib", library)
     monkeypatch.delitem(sys.modules, "driftworld.adapters.pufferlib", raising=False)
     module = importlib.import_module("driftworld.adapters.pufferlib")

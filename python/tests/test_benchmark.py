@@ -1,5 +1,5 @@
-"""The benchmark runner: each cell runs once in any process, with the same digests after kills; tables come from the
-logs alone.
+"""The benchmark runner: each cell runs once, in any process, with the same digest after a kill; tables are computed from
+the logs alone.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from driftworld.benchmark import Cell, Results, Sequence, run_cells
 from driftworld.benchmark import runner as running
 from driftworld.benchmark.command import main
 
-#: Runs in seconds: few decisions in the smoke sequence.
+#: Changes to the smoke sequence that make it run in seconds.
 TINY = {"decisions": 600, "evaluations": 2, "num_envs": 8}
 
 
@@ -125,7 +125,7 @@ def test_table_logs_match_their_reports(learner: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.learners
-def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> None:
+def test_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> None:
     words = [sys.executable, "-m", "driftworld", "benchmark", "run", str(tiny), "--learner", "ewc", "--learner", "clear", "--jobs", "2"]
     whole = tmp_path / "whole"
     subprocess.run([*words, "-o", str(whole)], check=True, capture_output=True)
@@ -138,7 +138,7 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         for claim in killed.rglob("claim"):
-            # As if a minute had passed.
+            # Makes the claim stale.
             os.utime(claim, (0, 0))
     found = run_cells(cells, killed)
     for report, before in zip(found, expected, strict=True):
@@ -171,9 +171,9 @@ def test_cell_whose_learner_was_lost_reruns_to_the_same_digest(tiny: Path, tmp_p
         patched.setattr(running, "_finish", kill)
         with pytest.raises(KeyboardInterrupt):
             run_cells([cell], tmp_path / "killed")
-    lost = sorted((tmp_path / "killed").rglob("kept/*.pt"))
-    assert len(lost) == 3
-    lost[1].unlink()
+    saved_learners = sorted((tmp_path / "killed").rglob("kept/*.pt"))
+    assert len(saved_learners) == 3
+    saved_learners[1].unlink()
     (again,) = run_cells([cell], tmp_path / "killed")
     assert whole is not None and again is not None and whole["digest"] == again["digest"]
 
@@ -215,8 +215,8 @@ def test_dead_ray_node_changes_no_digest(tiny: Path, tmp_path: Path, monkeypatch
     cluster_utils = pytest.importorskip("ray.cluster_utils")
     ray = pytest.importorskip("ray")
     cells = [Cell(str(tiny), "finetuning", seed) for seed in (0, 1, 2)]
-    alone = run_cells(cells, tmp_path / "alone")
-    # For the nodes, which start their own processes.
+    local = run_cells(cells, tmp_path / "alone")
+    # The nodes start their own processes, which read this variable.
     monkeypatch.setenv("DRIFTWORLD_STALE_SECONDS", "12")
     cluster = cluster_utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
     try:
@@ -228,5 +228,5 @@ def test_dead_ray_node_changes_no_digest(tiny: Path, tmp_path: Path, monkeypatch
     finally:
         ray.shutdown()
         cluster.shutdown()
-    digests = [[report and report["digest"] for report in reports] for reports in (alone, found)]
+    digests = [[report and report["digest"] for report in reports] for reports in (local, found)]
     assert digests[0] == digests[1] and None not in digests[0]

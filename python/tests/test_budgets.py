@@ -1,4 +1,4 @@
-"""Regimes with a budget of decisions: the experiences that run match an independent computation, even after a kill."""
+"""Regimes with a budget of decisions run the experiences that an independent computation expects, even after a kill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from test_vector_lifetimes import Many
 
 
 class Stroller(Circler):
-    """Walks a random course, drawn with the experience's seed."""
+    """Walks at random, seeded by the experience."""
 
     def begin(self, label: str | None, seed: int) -> None:
         self.random = np.random.default_rng(seed)
@@ -24,7 +24,7 @@ class Stroller(Circler):
 
 
 def scenario(budgets: dict[str, int], **block: Any) -> dict[str, Any]:
-    """Episodes of different lengths: lava ends them."""
+    """A scenario with episodes of different lengths, because lava ends them."""
     regimes = [
         {"task": "lava_crossing", "variant": variant, "count": 50, "steps": steps, "seed": 3, "max_steps": 9 + 8 * place}
         for place, (variant, steps) in enumerate(budgets.items())
@@ -36,7 +36,7 @@ def scenario(budgets: dict[str, int], **block: Any) -> dict[str, Any]:
 
 
 def expected(curriculum: Curriculum, lengths: dict[int, int], num_envs: int) -> set[int]:
-    """The numbers of the experiences that run, computed step by step as in the environments."""
+    """The numbers of the experiences that should run, from a simulation of the environments step by step."""
     run: set[int] = set()
     for block in curriculum:
         waiting, left, spent = list(block), [0] * num_envs, {}
@@ -77,8 +77,8 @@ def test_budget_runs_the_expected_experiences(tmp_path: Path, num_envs: int, mix
 
 @pytest.mark.parametrize("budget", range(21, 105, 12))
 @pytest.mark.parametrize("num_envs", [2, 3])
-def test_all_that_is_learned_from_is_in_the_log(tmp_path: Path, num_envs: int, budget: int) -> None:
-    """Even if all environments end in the same step."""
+def test_log_contains_every_learned_step(tmp_path: Path, num_envs: int, budget: int) -> None:
+    """This holds even if all environments end in the same step."""
     curriculum = Curriculum.from_dict(scenario({"lava": budget, "middle": budget}))
     agents = Many(num_envs, Stroller)
     assert curriculum.run_vector(agents, tmp_path / "log", num_envs=num_envs, **SMALL).finished
@@ -98,14 +98,14 @@ def test_budget_resumes_after_a_kill(tmp_path: Path, num_envs: int) -> None:
     curriculum = Curriculum.from_dict(scenario({"lava": 70, "middle": 64}))
 
     class Shared(Many):
-        """All its environments share their knowledge, which affects every action."""
+        """The agents share their knowledge, which affects every action."""
 
         def __init__(self) -> None:
             super().__init__(num_envs, Pupil)
 
         def act(self, observations: Any, infos: dict[str, Any]) -> Any:
             known = sum(agent.knowledge for agent in self.agents)
-            turns = [(known * 37 + agent.chance % 1000) % 180 - 90 for agent in self.agents]
+            turns = [(known * 37 + agent.seed % 1000) % 180 - 90 for agent in self.agents]
             return np.array([[8, turn, 0] for turn in turns], dtype=np.float32)
 
         def save(self, path: Path) -> None:

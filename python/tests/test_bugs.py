@@ -30,7 +30,7 @@ def test_missing_test_or_changed_page_is_reported(tmp_path: Path, file: str) -> 
         shutil.copy(ROOT / each, tmp_path / each)
     assert check(tmp_path).returncode == 0
     text = (tmp_path / file).read_text(encoding="utf-8")
-    (tmp_path / file).write_text(text.replace("test_a_log_goes_on_where_it_stopped", "test_nobody_wrote"), encoding="utf-8")
+    (tmp_path / file).write_text(text.replace("test_log_resumes_where_it_stopped", "test_nobody_wrote"), encoding="utf-8")
     done = check(tmp_path)
     assert done.returncode == 1
     assert file in done.stderr

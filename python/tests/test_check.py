@@ -1,4 +1,4 @@
-"""`python -m driftworld.check` passes correct environments, finds faults, and reports them in its exit status."""
+"""`python -m driftworld.check` passes correct environments, finds faults, and returns an exit status."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_processes_keep_the_contract() -> None:
     assert [each.outcome for each in report.findings if "AsyncVectorEnv" in each.rule] == ["passed"]
 
 
-def test_windows_are_looked_at_where_pygame_is_and_nothing_else_needs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_window_check_needs_pygame(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pygame", None)
     report = checks.check("get_to_goal", steps=20, processes=False, size=40, modalities="rgb")
     assert report.ok, str(report)
@@ -102,7 +102,7 @@ def test_incomplete_state_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     state = DriftworldEnv.state
 
     def forgetful(self: DriftworldEnv) -> dict[str, Any]:
-        # Without both, wandering objects have no goal, and draw a new one.
+        # Without progress and seeds, wandering objects draw another goal.
         world = state(self)
         del world["progress"]
         for thing in world["objects"]:

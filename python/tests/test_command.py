@@ -21,41 +21,41 @@ def run(*argv: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_version_is_printed() -> None:
-    said = run("--version")
-    assert (said.returncode, said.stdout) == (0, f"driftworld {driftworld.__version__}\n")
+    done = run("--version")
+    assert (done.returncode, done.stdout) == (0, f"driftworld {driftworld.__version__}\n")
 
 
 def test_output_is_printed() -> None:
-    said = run("sample", "find_objects#red", "--seed", "7")
-    assert said.returncode == 0 and json.loads(said.stdout) == driftworld.variant("find_objects#red").sample(7)
+    done = run("sample", "find_objects#red", "--seed", "7")
+    assert done.returncode == 0 and json.loads(done.stdout) == driftworld.variant("find_objects#red").sample(7)
 
 
 def test_wrong_input_exits_with_1() -> None:
-    said = run("sample", "find_object#red")
-    assert said.returncode == 1 and said.stdout == ""
-    assert said.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in " ".join(said.stderr.split())
+    done = run("sample", "find_object#red")
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in " ".join(done.stderr.split())
 
 
 @pytest.mark.parametrize("argv", [["sampel"], ["sample", "find_objects", "--sed", "3"], ["order"]])
 def test_wrong_arguments_exit_with_2(argv: list[str]) -> None:
-    said = run(*argv)
-    assert said.returncode == 2 and "driftworld" in said.stderr and "__main__" not in said.stderr
+    done = run(*argv)
+    assert done.returncode == 2 and "driftworld" in done.stderr and "__main__" not in done.stderr
 
 
 def test_help_exits_with_0() -> None:
-    said = run("sample", "--help")
-    assert said.returncode == 0 and "Usage: driftworld sample" in said.stdout and said.stderr == ""
+    done = run("sample", "--help")
+    assert done.returncode == 0 and "Usage: driftworld sample" in done.stdout and done.stderr == ""
 
 
 def test_python_errors_match_the_command() -> None:
     with pytest.raises(driftworld.TaskError) as refused:
         driftworld.variant("find_object#red")
-    # The command wraps lines at words, to fit a terminal.
-    said = run("sample", "find_object#red").stderr
-    assert said.split() == f"error: {refused.value}".split()
+    # The command wraps lines to fit the terminal.
+    stderr = run("sample", "find_object#red").stderr
+    assert stderr.split() == f"error: {refused.value}".split()
 
 
-def test_closed_pipe_ends_it_quietly() -> None:
+def test_closed_pipe_ends_the_command_quietly() -> None:
     child = subprocess.Popen(
         command("sample", "find_objects", "--count", "100000", "--jsonl"),
         stdout=subprocess.PIPE,
@@ -68,7 +68,7 @@ def test_closed_pipe_ends_it_quietly() -> None:
     child.stderr.close()
 
 
-def test_interrupt_ends_it_with_a_message() -> None:
+def test_interrupt_ends_the_command_with_a_message() -> None:
     child = subprocess.Popen(
         command("sample", "find_objects", "--count", "100000000", "--jsonl"),
         stdout=subprocess.PIPE,
@@ -77,10 +77,10 @@ def test_interrupt_ends_it_with_a_message() -> None:
     assert child.stdout is not None
     child.stdout.readline()
     child.send_signal(signal.SIGINT)
-    # Reads to the end: a writer that waits for its reader would never end.
-    _, said = child.communicate(timeout=60)
+    # Reads everything: the writer would otherwise block and never end.
+    _, stderr = child.communicate(timeout=60)
     # `sample` handles interrupts, to remove unfinished files.
-    assert child.returncode == 130 and said.startswith(b"error: interrupted after ")
+    assert child.returncode == 130 and stderr.startswith(b"error: interrupted after ")
 
 
 def test_interrupted_run_leaves_a_resumable_log(tmp_path: Path) -> None:
@@ -91,9 +91,9 @@ def test_interrupted_run_leaves_a_resumable_log(tmp_path: Path) -> None:
     while not list(log.glob("*/1-train")) and child.poll() is None:
         pass
     child.send_signal(signal.SIGINT)
-    _, said = child.communicate(timeout=60)
-    assert child.returncode == 130 and "interrupted" in said and "--resume" in said
-    lived = len(driftworld.read_log(log))
-    assert 0 < lived < 3002
+    _, stderr = child.communicate(timeout=60)
+    assert child.returncode == 130 and "interrupted" in stderr and "--resume" in stderr
+    num_rows = len(driftworld.read_log(log))
+    assert 0 < num_rows < 3002
     subprocess.run([*argv, "--resume"], check=True, capture_output=True)
     assert len(driftworld.read_log(log)) == 3002

@@ -1,5 +1,5 @@
 """Options of an environment that hide differences between variants are refused in curricula, and cause warnings in
-environments.
+single and vector environments.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {}
 for program in LEARNERS:
     if (options := options_of(program)) and options not in EXAMPLES.values():
         EXAMPLES[program.name] = options
-DRAWN: list[dict[str, Any]] = [
+OPTION_SETS: list[dict[str, Any]] = [
     {"frame_skip": 5},
     {"modalities": "rgb"},
     {"modalities": ["rgb"], "blank": True},
@@ -58,14 +58,14 @@ DRAWN: list[dict[str, Any]] = [
 ]
 
 
-def regimes(*variants: str) -> Curriculum:
+def evaluation_of(*variants: str) -> Curriculum:
     listed = [{"task": name.partition("#")[0], "variant": name.partition("#")[2], "count": 1} for name in variants]
     blocks = [{"type": "evaluation", "regimes": [{**regime, "seed": 1} for regime in listed]}]
     return Curriculum.from_dict({"name": "pair", "blocks": blocks})
 
 
 def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
-    """A variant's first world with these options, without the modalities that observations do not have."""
+    """A variant's first world with these options, with only the modalities that observations have."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         env = DriftworldEnv(variant, **{"size": 8, **options})
@@ -78,8 +78,8 @@ def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
     return state
 
 
-def expect_told_apart(variants: list[str], options: dict[str, Any]) -> None:
-    """Expects that variants whose first worlds differ still differ with the options."""
+def expect_distinguishable(variants: list[str], options: dict[str, Any]) -> None:
+    """Expects variants whose first worlds differ to differ with the options too."""
     plain = {name: world(name, {"actions": None}) for name in variants}
     under: dict[str, Any] = {}
     for one, other in itertools.combinations(variants, 2):
@@ -88,7 +88,7 @@ def expect_told_apart(variants: list[str], options: dict[str, Any]) -> None:
         for name in (one, other):
             if name not in under:
                 under[name] = world(name, options)
-        assert under[one] != under[other], f"{one} and {other} are one under {options}"
+        assert under[one] != under[other], f"{one} and {other} are the same with {options}"
 
 
 @pytest.mark.parametrize("example", EXAMPLES)
@@ -102,7 +102,7 @@ def test_example_options_hide_no_variant_differences(path: Path, example: str) -
     except CurriculumError as error:
         assert error.code == "curriculum/covered"
         return
-    expect_told_apart(variants, options)
+    expect_distinguishable(variants, options)
 
 
 def test_shipped_examples_run_with_agreeing_variants() -> None:
@@ -117,29 +117,29 @@ def test_shipped_examples_run_with_agreeing_variants() -> None:
 
 
 def test_drawn_variants_stay_distinct() -> None:
-    draw = np.random.default_rng(38)
+    rng = np.random.default_rng(38)
     names = [f"{task}#{name}" for task in ("find_objects", "moving_object") for name in driftworld.TaskSpec.load(task).variant_names()]
-    often = [name for name in names if name.endswith(("held", "no_interact", "rgb_only", "depth_only", "with_class"))]
+    likely = [name for name in names if name.endswith(("held", "no_interact", "rgb_only", "depth_only", "with_class"))]
     refused = 0
     for number in range(24):
-        pair = [str(draw.choice(often if number % 2 else names)), str(draw.choice(names))]
-        options = DRAWN[draw.integers(len(DRAWN))]
+        pair = [str(rng.choice(likely if number % 2 else names)), str(rng.choice(names))]
+        options = OPTION_SETS[rng.integers(len(OPTION_SETS))]
         if pair[0] == pair[1]:
             continue
         try:
-            regimes(*pair).environment(**options)
+            evaluation_of(*pair).environment(**options)
         except CurriculumError as error:
             assert error.code == "curriculum/covered"
             refused += 1
         except ValueError:
             continue
         else:
-            expect_told_apart(pair, options)
+            expect_distinguishable(pair, options)
     assert refused >= 3
 
 
 @pytest.mark.parametrize(
-    "pair, options, told",
+    "pair, options, message",
     [
         (("blue", "long_held"), {"frame_skip": 5}, r"^frame_skip: .*agent_params\.frame_skip.*#blue \(1\).*#long_held \(5\)"),
         (("held",), {"frame_skip": 1}, r"^frame_skip: .*#held \(\d+\).*#default \(1\)"),
@@ -150,10 +150,10 @@ def test_drawn_variants_stay_distinct() -> None:
     ids=str,
 )
 def test_option_hiding_a_difference_is_refused_with_key_and_variants(
-    pair: tuple[str, ...], options: dict[str, Any], told: str
+    pair: tuple[str, ...], options: dict[str, Any], message: str
 ) -> None:
     names = [f"find_objects#{name}" for name in pair]
-    curriculum = regimes(*names)
+    curriculum = evaluation_of(*names)
     given = {**SMALL, "modalities": ["rgb", "depth"], "blank": True, **options}
     runs = [
         lambda: curriculum.run(Circler(), **given),
@@ -161,19 +161,19 @@ def test_option_hiding_a_difference_is_refused_with_key_and_variants(
         lambda: curriculum.environment(**given),
     ]
     for run in runs:
-        with pytest.raises(CurriculumError, match=told) as refused:
+        with pytest.raises(CurriculumError, match=message) as refused:
             run()
         assert refused.value.code == "curriculum/covered"
     if given["modalities"] == ["rgb"]:
         with pytest.raises(ValueError, match="found images of depth"):
             DriftworldVectorEnv(names[0], 2, variants=[pair[0], pair[-1]], **given)
         return
-    with pytest.warns(UserWarning, match=told):
+    with pytest.warns(UserWarning, match=message):
         DriftworldVectorEnv(names[0], 2, variants=[pair[0], pair[-1]], **given)
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         gym.make("driftworld/FindObjects-v0", variant=pair[-1], **given).reset(seed=0, options={"variant": pair[0]})
-    assert any(str(one.message).startswith(told[1 : told.index(":") + 1]) for one in warned)
+    assert any(str(one.message).startswith(message[1 : message.index(":") + 1]) for one in warned)
 
 
 def test_hidden_random_values_cause_a_warning_and_limits_join_tasks() -> None:
@@ -183,7 +183,7 @@ def test_hidden_random_values_cause_a_warning_and_limits_join_tasks() -> None:
     document["world"]["agent_params"]["frame_skip"] = {"integer_uniform": {"low": 1, "high": 5}}
     with pytest.warns(UserWarning, match="^frame_skip: .*draws anew in each world"):
         DriftworldEnv(document, size=8, frame_skip=2)
-    curriculum = regimes("find_objects#blue", "get_to_goal#plain")
+    curriculum = evaluation_of("find_objects#blue", "get_to_goal#plain")
     curriculum.environment(**SMALL, max_steps=20).close()
 
 
@@ -196,16 +196,16 @@ def test_options_without_differences_cause_no_warning() -> None:
 
 
 def test_variants_that_look_alike_in_all_images_are_refused() -> None:
-    told = r"^modalities: found it over target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
-    curriculum = regimes("find_objects#blue", "find_objects#red")
+    message = r"^modalities: found it over target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
+    curriculum = evaluation_of("find_objects#blue", "find_objects#red")
     for shown in ("depth", ["depth", "class"], "state"):
-        with pytest.raises(CurriculumError, match=told) as refused:
+        with pytest.raises(CurriculumError, match=message) as refused:
             curriculum.environment(size=8, modalities=shown)
         assert refused.value.code == "curriculum/covered"
-    with pytest.warns(UserWarning, match=told):
+    with pytest.warns(UserWarning, match=message):
         DriftworldVectorEnv("find_objects#blue", 2, variants=["blue", "red"], size=8, modalities="depth").close()
     curriculum.environment(size=8, modalities=["rgb", "depth"]).close()
-    regimes("find_objects#blue", "find_objects#huddle").environment(size=8, modalities="depth").close()
+    evaluation_of("find_objects#blue", "find_objects#huddle").environment(size=8, modalities="depth").close()
 
 
 def test_continuous_action_bounds_include_every_drawn_world() -> None:

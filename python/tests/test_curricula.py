@@ -1,4 +1,4 @@
-"""Curricula in Python: designed, read, iterated and saved."""
+"""Tests curricula in Python: designing, reading, iterating and saving."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_blocks_and_experiences_can_be_iterated() -> None:
         "find_objects", "find_objects#blue", 1, 1, False
     )  # fmt: skip
     expected = driftworld.variant("find_objects#blue").sample(1, 1)
-    # The limit of steps replaces the task's limit of seconds.
+    # The step limit replaces the task's time limit.
     assert expected.pop("max_seconds") == 30
     assert second.world() == {**expected, "max_steps": 40}
     assert curriculum[1][-1] == curriculum[1][2] == curriculum[1][2:][0]
@@ -98,7 +98,7 @@ def test_blocks_and_experiences_can_be_iterated() -> None:
         curriculum[1][3]
 
 
-@pytest.mark.skipif(os.name != "posix", reason="modes are POSIX's")
+@pytest.mark.skipif(os.name != "posix", reason="only POSIX has file modes")
 def test_file_modes_follow_the_umask(tmp_path: Path) -> None:
     file = tmp_path / "scenario.json"
     before = os.umask(0o027)
@@ -217,7 +217,7 @@ def test_model_missing_from_its_class_is_refused(tmp_path: Path) -> None:
 
 def test_notebook_shows_a_curriculum_as_its_blocks() -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=3, eval_episodes=2, seed=0)
-    told = curriculum._repr_html_()
-    assert told.count("<tr>") == len(curriculum) + 1
-    assert f"{len(curriculum)} blocks, {curriculum.num_experiences} experiences" in told
-    assert told.count(">find_objects#blue, find_objects#red<") == 3 and ">learning<" in told
+    html = curriculum._repr_html_()
+    assert html.count("<tr>") == len(curriculum) + 1
+    assert f"{len(curriculum)} blocks, {curriculum.num_experiences} experiences" in html
+    assert html.count(">find_objects#blue, find_objects#red<") == 3 and ">learning<" in html

@@ -1,4 +1,4 @@
-"""Distances, matrices and orders in Python match the command's."""
+"""Distances, matrices and orders in Python match those of the command."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ import pytest
 from driftworld import DistanceMatrix, SimilarityError, _native, distance, distance_matrix, order
 from driftworld._literals import ComparedBy
 
-SOME = ["find_objects#blue", "find_objects#red", "find_objects#dusk", "find_objects#penalty"]
+VARIANTS = ["find_objects#blue", "find_objects#red", "find_objects#dusk", "find_objects#penalty"]
 
 
-def commanded(*argv: str) -> Any:
+def command_output(*argv: str) -> Any:
     """The command's output as JSON."""
     command = [sys.executable, "-m", "driftworld", *argv, "--json"]
     return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
@@ -38,7 +38,7 @@ def commanded(*argv: str) -> Any:
     ],
 )
 def test_distance_matches_the_command(a: str, b: str, options: dict[str, Any], flags: list[str]) -> None:
-    found, expected = distance(a, b, **options), commanded("distance", a, b, *flags)
+    found, expected = distance(a, b, **options), command_output("distance", a, b, *flags)
     assert float(found) == found.total == expected["total"]
     assert list(found.elements.values()) == list(expected["elements"].values())
     assert found.compared == expected["compared"]
@@ -53,7 +53,7 @@ def test_worlds_are_compared_directly(tmp_path: Path) -> None:
     worlds = variant.sample_many(2)
     for path, world in zip(paths, worlds, strict=True):
         path.write_text(json.dumps(world), encoding="utf-8")
-    expected = commanded("distance", *map(str, paths))["total"]
+    expected = command_output("distance", *map(str, paths))["total"]
     assert expected > 0
     assert (
         distance(*worlds).total
@@ -68,9 +68,9 @@ def test_worlds_are_compared_directly(tmp_path: Path) -> None:
 @pytest.mark.parametrize("by", get_args(ComparedBy))
 def test_every_measure_has_a_name(by: ComparedBy) -> None:
     if by == "dynamics:bisimulation":
-        pytest.skip("whole meadows take seconds; the tests of the library have a small one")
+        pytest.skip("worlds of this size take seconds; the library's own tests use smaller ones")
     found = distance("find_objects#red", "find_objects#penalty", by=by, worlds=1)
-    expected = commanded("distance", "find_objects#red", "find_objects#penalty", "--by", by, "--worlds", "1")
+    expected = command_output("distance", "find_objects#red", "find_objects#penalty", "--by", by, "--worlds", "1")
     assert (found.by, found.total, found.compared) == (by, expected["total"], expected["compared"])
     matrix = distance_matrix(["find_objects#red", "find_objects#penalty"], by=by, worlds=1)
     assert matrix[0, 1] == pytest.approx(found.total, abs=1e-12)
@@ -88,7 +88,7 @@ def test_shares_are_relative_to_the_diameter() -> None:
 
 
 def test_distance_behaves_as_a_number() -> None:
-    near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
+    near, far = distance(VARIANTS[0], VARIANTS[1]), distance(VARIANTS[0], VARIANTS[3])
     assert near < far and max(near, far) is far and near < 1.9 and near != far and near == near.total
     assert np.asarray([near, far]).sum() == near + far == near.total + far.total
     again = pickle.loads(pickle.dumps(far))
@@ -99,8 +99,8 @@ def test_distance_behaves_as_a_number() -> None:
 
 
 def test_distance_explains_its_parts() -> None:
-    said = distance("find_objects#blue", "find_objects#dusk").explain()
-    lines = said.splitlines()
+    text = distance("find_objects#blue", "find_objects#dusk").explain()
+    lines = text.splitlines()
     assert lines[0] == "1.4474, by parameters"
     assert any(line.startswith("  O observation") for line in lines)
     assert any(line.startswith("light ") and line.endswith("%") for line in lines)
@@ -108,24 +108,24 @@ def test_distance_explains_its_parts() -> None:
 
 def test_incomparable_subjects_are_refused_with_reason() -> None:
     with pytest.raises(SimilarityError) as refused:
-        distance(SOME[0], SOME[1], weights={"R": -1})
+        distance(VARIANTS[0], VARIANTS[1], weights={"R": -1})
     assert refused.value.code is not None and refused.value.code.startswith("similarity/")
     with pytest.raises(ValueError, match="element: found"):
-        distance(SOME[0], SOME[1], weights={"X": 1})
+        distance(VARIANTS[0], VARIANTS[1], weights={"X": 1})
     with pytest.raises(ValueError, match="worlds"):
-        distance(SOME[0], SOME[1], worlds=0)
+        distance(VARIANTS[0], VARIANTS[1], worlds=0)
     with pytest.raises(driftworld.TaskError):
-        distance("find_object#blue", SOME[1])
+        distance("find_object#blue", VARIANTS[1])
     with pytest.raises(TypeError, match="document: found int"):
-        distance(3, SOME[1])
+        distance(3, VARIANTS[1])
 
 
 def test_matrix_matches_the_command() -> None:
-    matrix, expected = distance_matrix(SOME), commanded("order", *SOME)["matrix"]
-    assert matrix.labels == expected["labels"] == SOME
+    matrix, expected = distance_matrix(VARIANTS), command_output("order", *VARIANTS)["matrix"]
+    assert matrix.labels == expected["labels"] == VARIANTS
     assert np.array_equal(matrix, np.array(expected["values"]))
     assert matrix.is_metric and expected["nature"] == "metric"
-    assert matrix[0, 1] == matrix["find_objects#blue", "find_objects#red"] == distance(SOME[0], SOME[1]).total
+    assert matrix[0, 1] == matrix["find_objects#blue", "find_objects#red"] == distance(VARIANTS[0], VARIANTS[1]).total
     assert matrix.values.dtype == np.float64 and matrix.values.shape == (4, 4) and len(matrix) == 4
     with pytest.raises(ValueError, match="read-only"):
         matrix.values[0, 1] = 3
@@ -145,19 +145,19 @@ def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
         distance_matrix(["find_objects#blue", "get_to_goal#plain"])
     matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"], by="worlds")
     with pytest.warns(UserWarning, match="distance: found variants of two tasks and no by"):
-        apart = distance("find_objects#blue", "get_to_goal#plain")
-    assert "two tasks have no parameters in common; the unit is another" in apart.compared
-    assert apart == distance("find_objects#blue", "get_to_goal#plain", by="worlds")
-    assert not matrix.is_metric and matrix[0, 1] == pytest.approx(apart.total)
+        separation = distance("find_objects#blue", "get_to_goal#plain")
+    assert "two tasks have no parameters in common; the unit is another" in separation.compared
+    assert separation == distance("find_objects#blue", "get_to_goal#plain", by="worlds")
+    assert not matrix.is_metric and matrix[0, 1] == pytest.approx(separation.total)
 
 
 @pytest.mark.parametrize("ending", ["csv", "json"])
 def test_matrix_survives_saving_and_loading(tmp_path: Path, ending: str) -> None:
-    matrix, path = distance_matrix(SOME), tmp_path / "new" / f"matrix.{ending}"
+    matrix, path = distance_matrix(VARIANTS), tmp_path / "new" / f"matrix.{ending}"
     matrix.save(path)
     again = DistanceMatrix.load(path)
-    assert again.labels == SOME and np.array_equal(again, matrix)
-    assert commanded("order", "--from-matrix", str(path))["order"] == order(matrix).labels
+    assert again.labels == VARIANTS and np.array_equal(again, matrix)
+    assert command_output("order", "--from-matrix", str(path))["order"] == order(matrix).labels
 
 
 def test_matrix_from_numbers_is_validated() -> None:
@@ -166,13 +166,13 @@ def test_matrix_from_numbers_is_validated() -> None:
         with pytest.raises(SimilarityError):
             DistanceMatrix(["a", "b"], values)
     with pytest.raises(ValueError, match="ends in .csv"):
-        distance_matrix(SOME[:2]).save("matrix.txt")
+        distance_matrix(VARIANTS[:2]).save("matrix.txt")
     with pytest.raises(ValueError, match="removed in 0.3; use .csv or .json"):
-        distance_matrix(SOME[:2]).save("matrix.npy")
+        distance_matrix(VARIANTS[:2]).save("matrix.npy")
 
 
 def test_matrix_supports_the_numpy_array_protocol() -> None:
-    matrix = distance_matrix(SOME[:2])
+    matrix = distance_matrix(VARIANTS[:2])
     assert np.asarray(matrix) is matrix.values
     owned = np.array(matrix)
     owned[0, 1] = 7
@@ -182,27 +182,27 @@ def test_matrix_supports_the_numpy_array_protocol() -> None:
 
 
 def test_matrix_is_a_container_of_labelled_rows() -> None:
-    matrix = distance_matrix(SOME)
-    assert list(matrix) == SOME == [label for label in matrix]
-    assert all(label in matrix for label in SOME) and "find_objects#green" not in matrix and 0.0 not in matrix
+    matrix = distance_matrix(VARIANTS)
+    assert list(matrix) == VARIANTS == [label for label in matrix]
+    assert all(label in matrix for label in VARIANTS) and "find_objects#green" not in matrix and 0.0 not in matrix
     assert (matrix.shape, matrix.ndim, matrix.dtype) == ((4, 4), 2, np.float64)
     assert (np.shape(matrix), np.ndim(matrix)) == ((4, 4), 2)
     assert all(np.array_equal(matrix[label], matrix.values[row]) for row, label in enumerate(matrix))
 
 
 def test_matrices_are_equal_if_labels_and_distances_are() -> None:
-    matrix, again = distance_matrix(SOME), distance_matrix(SOME)
+    matrix, again = distance_matrix(VARIANTS), distance_matrix(VARIANTS)
     assert matrix == again == pickle.loads(pickle.dumps(matrix)) and len({matrix, again}) == 1
-    assert matrix != distance_matrix(SOME[::-1]) and matrix != distance_matrix(SOME, {"R": 3})
-    assert matrix != SOME and (matrix == matrix.values).all()
+    assert matrix != distance_matrix(VARIANTS[::-1]) and matrix != distance_matrix(VARIANTS, {"R": 3})
+    assert matrix != VARIANTS and (matrix == matrix.values).all()
 
 
 def test_matrix_converts_to_pandas() -> None:
     pandas = pytest.importorskip("pandas", reason="data frames are pandas'")
-    matrix = distance_matrix(SOME)
+    matrix = distance_matrix(VARIANTS)
     frame = matrix.to_pandas()
-    assert frame.index.tolist() == frame.columns.tolist() == SOME
-    assert frame.loc[SOME[0], SOME[1]] == matrix[0, 1]
+    assert frame.index.tolist() == frame.columns.tolist() == VARIANTS
+    assert frame.loc[VARIANTS[0], VARIANTS[1]] == matrix[0, 1]
     frame.iloc[0, 1] = 7.0
     assert matrix[0, 1] != 7.0
     assert frame.shape == pandas.DataFrame(matrix, index=list(matrix), columns=list(matrix)).shape == matrix.shape
@@ -210,12 +210,12 @@ def test_matrix_converts_to_pandas() -> None:
 
 
 def test_order_is_a_sequence_of_labels() -> None:
-    found = order(SOME, start=SOME[2])
+    found = order(VARIANTS, start=VARIANTS[2])
     assert [found[place] for place in range(len(found))] == list(found) == found.labels
-    assert found[0] == SOME[2] and found[-1] == found.labels[-1] and found[1:3] == found.labels[1:3]
-    assert SOME[0] in found and "nobody" not in found
-    assert found.index(SOME[2]) == 0 and found.count(SOME[1]) == 1 and list(reversed(found)) == found.labels[::-1]
-    assert found == order(SOME, start=SOME[2]) and found != order(SOME, start=SOME[1])
+    assert found[0] == VARIANTS[2] and found[-1] == found.labels[-1] and found[1:3] == found.labels[1:3]
+    assert VARIANTS[0] in found and "nobody" not in found
+    assert found.index(VARIANTS[2]) == 0 and found.count(VARIANTS[1]) == 1 and list(reversed(found)) == found.labels[::-1]
+    assert found == order(VARIANTS, start=VARIANTS[2]) and found != order(VARIANTS, start=VARIANTS[1])
     with pytest.raises(IndexError):
         found[4]
 
@@ -226,34 +226,34 @@ def test_order_matches_the_command(method: str | None) -> None:
     flags = ["--seed", "3"] if method == "random" else []
     if method == "target-step":
         options, flags = {"target_step": 0.05}, ["--target-step", "0.05"]
-    expected = commanded("order", *SOME, *flags, *([] if method is None else ["--order", method]))
-    found = order(SOME, method, **options)
+    expected = command_output("order", *VARIANTS, *flags, *([] if method is None else ["--order", method]))
+    found = order(VARIANTS, method, **options)
     for field in ("method", "order", "steps", "length", "largest_step", "mean_step", "anchor_correlation"):
         assert getattr(found, field) == expected[field], field
-    assert [SOME[index] for index in found.indices] == found.labels == list(found)
+    assert [VARIANTS[index] for index in found.indices] == found.labels == list(found)
 
 
 def test_order_keeps_its_ends() -> None:
-    found = order(SOME, start=SOME[2], end=SOME[1])
-    assert (found.labels[0], found.labels[-1]) == (SOME[2], SOME[1])
+    found = order(VARIANTS, start=VARIANTS[2], end=VARIANTS[1])
+    assert (found.labels[0], found.labels[-1]) == (VARIANTS[2], VARIANTS[1])
     with pytest.raises(ValueError, match="start: found 'nobody', expected one of find_objects#blue"):
-        order(SOME, start="nobody")
+        order(VARIANTS, start="nobody")
     with pytest.raises(SimilarityError, match="nearby"):
-        order(SOME, "nearby")
+        order(VARIANTS, "nearby")
     with pytest.raises(ValueError, match="measured already"):
-        order(distance_matrix(SOME[:2]), weights={"R": 1})
+        order(distance_matrix(VARIANTS[:2]), weights={"R": 1})
     for name, value in {"by": "parameters", "worlds": 3, "scale": "share", "assets": ["a.dwal"]}.items():
         with pytest.raises(ValueError, match=f"{name}: found some beside a matrix"):
-            order(distance_matrix(SOME[:2]), **{name: value})  # type: ignore[arg-type]
+            order(distance_matrix(VARIANTS[:2]), **{name: value})  # type: ignore[arg-type]
 
 
 def test_embedding_keeps_distances_in_a_plane() -> None:
     points = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
-    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    matrix = DistanceMatrix(["a", "b", "c"], apart)
+    distances = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    matrix = DistanceMatrix(["a", "b", "c"], distances)
     mapped = matrix.embed()
     assert mapped.shape == (3, 2) and matrix.explained() == pytest.approx(1)
-    assert np.linalg.norm(mapped[:, None] - mapped[None], axis=-1) == pytest.approx(apart)
+    assert np.linalg.norm(mapped[:, None] - mapped[None], axis=-1) == pytest.approx(distances)
     assert matrix.embed(1).shape == (3, 1)
     with pytest.raises(ValueError, match="expected 1 or 2"):
         matrix.embed(3)
@@ -266,10 +266,10 @@ def test_file_that_is_neither_world_nor_task_is_refused(tmp_path: Path) -> None:
 
 
 def test_notebook_shows_differences_and_distances() -> None:
-    told = distance("find_objects#blue", "find_objects#dusk")._repr_html_()
-    assert "<td style=\"text-align: left\">light</td>" in told
-    # Equal parts are named below, without a row of zeros.
-    assert "equal: " in told and "<td style=\"text-align: left\">spread</td>" not in told
+    html = distance("find_objects#blue", "find_objects#dusk")._repr_html_()
+    assert "<td style=\"text-align: left\">light</td>" in html
+    # Equal parts are listed below the table, not as rows of zeros.
+    assert "equal: " in html and "<td style=\"text-align: left\">spread</td>" not in html
     matrix = distance_matrix(["find_objects#blue", "find_objects#red", "find_objects#dusk"])
     shown = matrix._repr_html_()
     assert shown.count("background-color") == 9 and "rgba(66, 133, 244, 0.60)" in shown

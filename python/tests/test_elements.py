@@ -1,4 +1,4 @@
-"""Measuring which elements variants change, from Python."""
+"""Tests `driftworld.elements`, which measures the elements that variants change."""
 
 import driftworld
 import pytest

@@ -1,4 +1,4 @@
-"""Infos name what ended an episode, in single and vector environments; puzzles continue from a state bit for bit."""
+"""Infos say why an episode ended, in single and vector environments; puzzles continue from a state bit for bit."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ GATE = thing("door", "gate", [0.0, 3.0], scale=2.0, door={})
 LAVA = {"disc": {"center": [0.0, 6.0], "radius": 2.0}, "ends": "failure"}
 BOX = thing("barrel", "box", [3.0, 1.0])
 
-#: For each word, a world that ends that way for an agent that runs ahead and interacts, and whether it is a success.
+#: For each value of `ended_by`, a world in which an agent that runs ahead and interacts ends the episode in this way, and
+#: whether that is a success.
 WORLDS: dict[str, tuple[dict[str, Any], bool]] = {
     "all_collected": (
         {"objects": [thing("barrel", "coin", [0, 4], **COIN)], "rules": {"success": ["all_collected"]}},
@@ -71,55 +72,55 @@ def vector(num_envs: int, change: dict[str, Any], **options: Any) -> Any:
     )
 
 
-def word_of(name: str) -> str | None:
-    """The word in infos: a limit of steps has none, because it may also be a wrapper's."""
+def expected_reason(name: str) -> str | None:
+    """The `ended_by` of infos: `None` for a step limit, because a wrapper may have it."""
     return None if name == "steps" else name
 
 
 @pytest.mark.parametrize("name", WORLDS)
-def test_an_episode_says_why_it_ended(name: str) -> None:
+def test_info_says_why_an_episode_ended(name: str) -> None:
     change, is_success = WORLDS[name]
     env = single(change)
     for _ in range(2):
         assert env.reset(seed=0)[1]["ended_by"] is None
-        told = []
+        reasons = []
         for _ in range(60):
             _, _, terminated, truncated, info = env.step(np.array([1.0, 0.0, 1.0], dtype=np.float32))
-            told.append(info["ended_by"])
+            reasons.append(info["ended_by"])
             if terminated or truncated:
                 break
         assert (terminated or truncated) and info["is_success"] is is_success
-        assert told == [None] * (len(told) - 1) + [word_of(name)]
-        assert truncated is (name in ("steps", "time")), "only limits cut episodes off"
+        assert reasons == [None] * (len(reasons) - 1) + [expected_reason(name)]
+        assert truncated is (name in ("steps", "time")), "only limits truncate episodes"
 
 
 @pytest.mark.parametrize("mode", AutoresetMode if HAS_MODES else [AutoresetMode.NEXT_STEP], ids=str)
 @pytest.mark.parametrize("name", ["touch", "carried", "zone", "steps", "time"])
-def test_vector_info_names_what_ended_each_episode(name: str, mode: Any) -> None:
+def test_vector_info_says_why_each_episode_ended(name: str, mode: Any) -> None:
     envs = vector(3, WORLDS[name][0], autoreset_mode=mode)
     info = envs.reset(seed=0)[1]
     assert list(info["ended_by"]) == [None] * 3 and info["_ended_by"].all()
-    # The first runs, the second stands still, the third runs but starts later.
+    # The first agent runs, the second stands still, and the third starts to run later.
     ends: list[set[str | None]] = [set(), set(), set()]
     for number in range(60):
         speeds = [1.0, 0.0, float(number > 3)]
         actions = np.array([[speed, 0.0, speed] for speed in speeds], dtype=np.float32)
         _, _, terminated, truncated, info = envs.step(actions)
         ended = terminated | truncated
-        said = info["final_info"]["ended_by"] if mode == AutoresetMode.SAME_STEP and ended.any() else info["ended_by"]
+        reasons = info["final_info"]["ended_by"] if mode == AutoresetMode.SAME_STEP and ended.any() else info["ended_by"]
         for env in range(3):
             if ended[env]:
-                ends[env].add(said[env])
+                ends[env].add(reasons[env])
             else:
                 assert info["ended_by"][env] is None
         if mode == AutoresetMode.DISABLED and ended.any():
             envs.reset(options={"reset_mask": ended})
-    both = {word_of(name)}
-    waits = both if name in ("steps", "time") else set()
-    assert ends == [both, waits, both]
+    running = {expected_reason(name)}
+    waiting = running if name in ("steps", "time") else set()
+    assert ends == [running, waiting, running]
 
 
-def test_gymnasiums_own_limit_has_no_word() -> None:
+def test_gymnasiums_step_limit_sets_no_ended_by() -> None:
     env = gym.make(WORLD, disable_env_checker=True, max_episode_steps=3, world=world(WORLDS["touch"][0]), **FAST)
     env.reset(seed=0)
     for _ in range(3):
@@ -128,7 +129,7 @@ def test_gymnasiums_own_limit_has_no_word() -> None:
 
 
 def puzzle(seconds: float) -> dict[str, Any]:
-    """A locked door, its key in front of the agent, and energy of which half is used up after ``seconds``."""
+    """A locked door, its key in front of the agent, and energy that is half spent after ``seconds``."""
     leaf = thing("door", "gate", [0.0, 3.0], scale=2.0, door={"key": "key", "closes_after": 2.5})
     walls = [[[-10, 2.85], [-1, 2.85], [-1, 3.15], [-10, 3.15]], [[1, 2.85], [10, 2.85], [10, 3.15], [1, 3.15]]]
     return {
@@ -140,7 +141,7 @@ def puzzle(seconds: float) -> dict[str, Any]:
     }
 
 
-def to_the_open_door(env: Any) -> int:
+def walk_until_the_door_opens(env: Any) -> int:
     """Walks ahead, interacting, until the door is open; returns the number of steps."""
     for number in range(1, 40):
         info = env.step(np.array([0.5, 0.0, 1.0], dtype=np.float32))[4]
@@ -153,10 +154,10 @@ def to_the_open_door(env: Any) -> int:
 def test_puzzle_continues_from_its_state_bit_for_bit(seed: int) -> None:
     env = single(puzzle(1000.0))
     env.reset(seed=seed)
-    steps = to_the_open_door(env)
+    steps = walk_until_the_door_opens(env)
     env = single(puzzle(steps * env.state()["agent_params"].get("time_step", 0.1)))
     env.reset(seed=seed)
-    assert to_the_open_door(env) == steps
+    assert walk_until_the_door_opens(env) == steps
     state = json.loads(json.dumps(env.state()))
     progress = state["progress"]
     assert progress["objects"][0]["open"] is True and progress["carried"] == [1]
@@ -166,10 +167,10 @@ def test_puzzle_continues_from_its_state_bit_for_bit(seed: int) -> None:
     again.reset(options={"world": state})
     assert first_difference(env.state(), again.state()) is None
     assert first_difference(env._members.observation(0), again._members.observation(0)) is None
-    draw = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     for number in range(400):
         # With seed 0 the agent runs to the goal, otherwise it wanders.
-        action = [1.0, 0.0, 0.0] if seed == 0 else [draw.uniform(-0.5, 1), draw.uniform(-1, 1), draw.integers(2)]
+        action = [1.0, 0.0, 0.0] if seed == 0 else [rng.uniform(-0.5, 1), rng.uniform(-1, 1), rng.integers(2)]
         one, other = (each.step(np.array(action, dtype=np.float32)) for each in (env, again))
         assert first_difference(one, other) is None, number
         assert first_difference(env.state(), again.state()) is None, number
@@ -179,6 +180,6 @@ def test_puzzle_continues_from_its_state_bit_for_bit(seed: int) -> None:
     assert (one[1], one[4]["is_success"]) == ((5.0, True) if seed == 0 else (one[1], one[4]["ended_by"] == "touch"))
 
 
-def test_every_documented_word_has_a_world() -> None:
+def test_every_documented_ended_by_has_a_world() -> None:
     documented = set(re.findall(r'``"(\w+)"``', driftworld.DriftworldEnv.step.__doc__ or ""))
-    assert documented == {word_of(name) for name in WORLDS} - {None}
+    assert documented == {expected_reason(name) for name in WORLDS} - {None}

@@ -1,4 +1,4 @@
-"""Every exception has the text, code and position of the native error."""
+"""Every exception has the message, code and position of the native error."""
 
 from __future__ import annotations
 
@@ -28,72 +28,72 @@ CROWDED: dict[str, Any] = {
 }
 
 
-def no_key() -> Any:
+def unknown_key() -> Any:
     return TaskSpec.from_json("mine.json", '{\n  "name": "x",\n  "paramters": {}\n}')
 
 
-def no_json() -> Any:
+def invalid_json() -> Any:
     return TaskSpec.from_json("mine.json", '{\n  "name": }')
 
 
-def no_task() -> Any:
+def unknown_task() -> Any:
     return TaskSpec.load("find_object")
 
 
-def no_place() -> Any:
+def no_free_place() -> Any:
     return TaskSpec.from_dict(CROWDED).sample()
 
 
-def other_task() -> Any:
+def different_tasks() -> Any:
     return driftworld.Drift(driftworld.variant("find_objects#red"), driftworld.variant("get_to_goal#plain"))
 
 
-def no_method() -> Any:
+def unknown_method() -> Any:
     return driftworld.order("find_objects", "nearby")
 
 
-def no_action() -> Any:
+def step_after_end() -> Any:
     env = driftworld.DriftworldEnv("find_objects", modalities="rgb", size=16, max_steps=1)
     env.reset(seed=0)
     env.step(env.action_space.sample())
     return env.step(env.action_space.sample())
 
 
-def no_log() -> Any:
+def missing_log() -> Any:
     return driftworld.read_log("nowhere")
 
 
-def no_experience() -> Any:
+def unknown_experience() -> Any:
     return Curriculum.design("find_objects#red").experience(10**6)
 
 
 CASES: list[tuple[Callable[[], Any], type[DriftworldError], type[Exception], str]] = [
-    (no_key, driftworld.SpecError, ValueError, "spec/unknown-key"),
-    (no_json, driftworld.SpecError, ValueError, "spec/syntax"),
-    (no_task, driftworld.TaskError, LookupError, "task/unknown"),
-    (no_place, driftworld.GeneratorError, Exception, "generator/no-place"),
-    (other_task, driftworld.GeneratorError, Exception, "generator/different-tasks"),
-    (no_method, driftworld.SimilarityError, Exception, "similarity/unknown-method"),
-    (no_action, driftworld.EnvError, Exception, "env/ended"),
-    (no_log, driftworld.MetricsError, Exception, "metrics/not-a-directory"),
-    (no_experience, driftworld.CurriculumError, Exception, "curriculum/no-such-experience"),
+    (unknown_key, driftworld.SpecError, ValueError, "spec/unknown-key"),
+    (invalid_json, driftworld.SpecError, ValueError, "spec/syntax"),
+    (unknown_task, driftworld.TaskError, LookupError, "task/unknown"),
+    (no_free_place, driftworld.GeneratorError, Exception, "generator/no-place"),
+    (different_tasks, driftworld.GeneratorError, Exception, "generator/different-tasks"),
+    (unknown_method, driftworld.SimilarityError, Exception, "similarity/unknown-method"),
+    (step_after_end, driftworld.EnvError, Exception, "env/ended"),
+    (missing_log, driftworld.MetricsError, Exception, "metrics/not-a-directory"),
+    (unknown_experience, driftworld.CurriculumError, Exception, "curriculum/no-such-experience"),
 ]
 
 
-@pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
+@pytest.mark.parametrize(("wrong", "kind", "base", "code"), CASES, ids=[case[0].__name__ for case in CASES])
 def test_error_has_its_class_and_code(
-    wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
+    wrong: Callable[[], Any], kind: type[DriftworldError], base: type[Exception], code: str
 ) -> None:
     with pytest.raises(DriftworldError) as refused:
         wrong()
     error = refused.value
-    assert type(error) is kind and isinstance(error, also) and isinstance(error, DriftworldError)
+    assert type(error) is kind and isinstance(error, base) and isinstance(error, DriftworldError)
     assert error.code == code and "expected" in str(error)
 
 
-@pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
+@pytest.mark.parametrize(("wrong", "kind", "base", "code"), CASES, ids=[case[0].__name__ for case in CASES])
 def test_error_survives_copying(
-    wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
+    wrong: Callable[[], Any], kind: type[DriftworldError], base: type[Exception], code: str
 ) -> None:
     with pytest.raises(DriftworldError) as refused:
         wrong()
@@ -113,13 +113,13 @@ def test_every_class_has_a_case() -> None:
 
 def test_invalid_document_is_refused_with_pointer_line_and_column() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
-        no_key()
+        unknown_key()
     error = refused.value
     assert (error.pointer, error.line, error.column) == ("/paramters", 3, 3)
     assert error.expected is not None and error.expected.startswith("one of version, name")
     assert error.problems[0]["advice"] == 'did you mean "parameters"?'
     with pytest.raises(driftworld.SpecError) as refused:
-        no_json()
+        invalid_json()
     assert (refused.value.pointer, refused.value.line, refused.value.column) == (None, 2, 11)
 
 
@@ -174,7 +174,7 @@ def test_drift_through_an_invalid_variant_reports_the_problem_there() -> None:
 
 def test_problems_convert_to_json() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
-        no_key()
+        unknown_key()
     assert json.loads(json.dumps(refused.value.problems)) == refused.value.problems
 
 
@@ -225,7 +225,7 @@ def test_foreign_text_cannot_control_the_terminal(tmp_path: Path) -> None:
     hostile = "\x1b]0;owned\x07\u202e\x9b2J\r\nValueError: FAKE\u200b\ufeff"
     file = tmp_path / "hostile.json"
     documents = [{"name": "t", hostile: 1}, {"name": hostile, "variants": {hostile: {}}}, {"blocks": [{"type": hostile}]}]
-    said = []
+    messages = []
     for document in documents:
         file.write_text(json.dumps(document), encoding="utf-8")
         for attempt in (
@@ -241,9 +241,9 @@ def test_foreign_text_cannot_control_the_terminal(tmp_path: Path) -> None:
             try:
                 attempt()
             except (DriftworldError, OSError, ValueError, TypeError) as error:
-                said.append(str(error))
-    assert len(said) > 10
-    for text in said:
+                messages.append(str(error))
+    assert len(messages) > 10
+    for text in messages:
         shown = text.replace("\n", "")
         assert shown.isprintable(), repr(text)
         assert not any(line.startswith("ValueError: FAKE") for line in text.splitlines()), text

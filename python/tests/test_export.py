@@ -1,4 +1,4 @@
-"""Exported networks: the built-in agent acts like the learner, and unsupported learners are refused."""
+"""With an exported network, the built-in agent acts like the learner; unsupported learners are refused."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_built_in_agent_acts_like_the_learner_in_whole_episodes(tmp_path: Path) 
         rows = driftworld.Recording.read(tmp_path / "python", episode).actions
         numbers = driftworld.Recording.read(tmp_path / "rust", episode).actions
         decided = np.array(ACTIONS, dtype=float)[rows]
-        # Limits of steps count each agent's own steps, so the shorter episode must be a prefix of the longer.
+        # Each agent's own steps count towards the step limit, so the shorter episode must be a prefix of the longer.
         length = min(len(numbers), 5 * len(decided))
         assert length >= 20
         assert np.array_equal(np.repeat(decided, 5, axis=0)[:length], numbers[:length])
@@ -47,7 +47,7 @@ def test_built_in_agent_acts_like_the_learner_in_whole_episodes(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("kind", ["RecurrentPPO", "PackNet"])
-def test_learner_that_acts_with_more_than_its_network_is_refused(kind: str, tmp_path: Path) -> None:
+def test_learner_with_state_beyond_its_network_is_refused(kind: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="expected a PatchNetwork alone"):
         small(kind).export(tmp_path / "net.safetensors", actions=ACTIONS)
     assert not list(tmp_path.iterdir())

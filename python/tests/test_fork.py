@@ -34,7 +34,7 @@ child.kill()
 
 
 @pytest.mark.parametrize("method", [method for method in multiprocessing.get_all_start_methods() if method == "fork"])
-def test_a_forked_process_works_as_its_parent_did(method: str) -> None:
+def test_forked_process_works_like_its_parent(method: str) -> None:
     program = PROGRAM.replace("fork", method)
-    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=180, check=False)
-    assert said.stdout == "0\n", said.stderr
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=180, check=False)
+    assert process.stdout == "0\n", process.stderr

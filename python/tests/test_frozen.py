@@ -1,6 +1,4 @@
-"""Evaluations must not change an agent: one that behaves differently when they are repeated is refused, whatever its
-rewards.
-"""
+"""An agent that acts differently when an evaluation is repeated is refused, whatever its rewards."""
 
 from __future__ import annotations
 
@@ -106,7 +104,7 @@ def run(kind: type[Uniform], name: str, seed: int, num_envs: int | None, **optio
 @pytest.mark.parametrize(
     "kind", [FromNumpy, pytest.param(FromTorch, marks=pytest.mark.learners), Normaliser, Counter]
 )
-def test_an_agent_that_is_not_frozen_is_refused_in_every_lifetime(kind: type[Uniform], num_envs: int | None) -> None:
+def test_unfrozen_agent_is_refused_in_every_lifetime(kind: type[Uniform], num_envs: int | None) -> None:
     if kind is FromTorch:
         pytest.importorskip("torch", reason="the generator is its")
     np.random.seed(3)
@@ -129,7 +127,7 @@ def test_frozen_agent_is_never_refused(name: str, num_envs: int | None) -> None:
 def test_refused_lifetime_is_refused_again_and_resumes_with_a_frozen_agent(tmp_path: Path, num_envs: int | None) -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=2, seed=0)
 
-    def live(kind: type[Uniform]) -> Any:
+    def run_with(kind: type[Uniform]) -> Any:
         agent = kind() if num_envs is None else Many(kind, num_envs)
         agent.name = "one"  # type: ignore[union-attr]
         run = curriculum.run if num_envs is None else lambda agent, **more: curriculum.run_vector(agent, num_envs=2, **more)
@@ -137,5 +135,5 @@ def test_refused_lifetime_is_refused_again_and_resumes_with_a_frozen_agent(tmp_p
 
     for _ in range(3):
         with pytest.raises(CurriculumError, match="block 0: found another action"):
-            live(FromNumpy)
-    assert live(Uniform).finished
+            run_with(FromNumpy)
+    assert run_with(Uniform).finished

@@ -1,4 +1,4 @@
-"""A single environment keeps Gymnasium's rules, with any supported Gymnasium version."""
+"""A single environment follows Gymnasium's rules, with every supported version of Gymnasium."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from gymnasium.utils.env_checker import check_env
 
 FIND = "driftworld/FindObjects-v0"
 TABLE = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
-#: With waypoint actions, rows are positions to go to.
-PLACES = [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0], [0.0, 0.0, 1.0]]
+#: Rows for waypoint actions: positions to go to.
+WAYPOINTS = [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0], [0.0, 0.0, 1.0]]
 MODALITIES = ["rgb", "depth", "segmentation", "class", "instance", "state"]
 
 
@@ -33,7 +33,7 @@ def bare(env_id: str, **options: Any) -> Any:
 
 
 def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
-    """The start of an episode: the reset, and steps with the same random actions in every call."""
+    """Results of a reset and of the first steps; every call takes the same random actions."""
     env.action_space.seed(7)
     results = [env.reset(seed=seed)]
     for _ in range(steps):
@@ -74,20 +74,20 @@ def test_every_task_has_its_own_id() -> None:
     ("misspelt", "meant"), [("modalites", "modalities"), ("max_step", "max_steps"), ("framskip", "frame_skip")]
 )
 def test_misspelt_option_suggests_the_closest(misspelt: str, meant: str) -> None:
-    made = [
+    constructors = [
         lambda: gym.make(FIND, **{misspelt: 3}),
         lambda: gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", **{misspelt: 3}),
         lambda: driftworld.DriftworldEnv("find_objects", **{misspelt: 3}),
         lambda: driftworld.DriftworldVectorEnv("find_objects", num_envs=2, **{misspelt: 3}),
     ]
-    for make in made:
+    for make in constructors:
         with pytest.raises(TypeError, match=f"found the option '{misspelt}', expected one of .*did you mean '{meant}'"):
             make()
     with pytest.raises(TypeError, match="found the option 'zzz', expected one of task, [^;]*$"):
         driftworld.DriftworldEnv("find_objects", zzz=1)
 
 
-def test_subclass_shows_its_options() -> None:
+def test_options_of_a_subclass_are_checked() -> None:
     class Own(driftworld.DriftworldEnv):
         def __init__(self, colour: str, **options: Any) -> None:
             super().__init__("find_objects", **options)
@@ -101,7 +101,7 @@ def test_subclass_shows_its_options() -> None:
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
 def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple[str, str], actions: Any) -> None:
     env_id, variant = task_variant
-    rows: Any = PLACES if (variant, actions) == ("waypoints", "discrete") else actions
+    rows: Any = WAYPOINTS if (variant, actions) == ("waypoints", "discrete") else actions
     # pyproject.toml turns warnings into errors.
     check_env(bare(env_id, variant=variant, actions=rows, size=40, render_mode="rgb_array", render_size=(48, 64)))
 
@@ -136,7 +136,7 @@ def test_custom_task_and_world_pass_gymnasiums_check(world_file: Path, task_file
     check_env(bare("driftworld/Task-v0", task=f"{task_file}#landmarks", render_mode="rgb_array"))
 
 
-def test_continuous_actions_use_units_and_cause_the_only_warning() -> None:
+def test_continuous_actions_use_physical_units_and_cause_only_that_warning() -> None:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         check_env(bare(FIND, actions="continuous", size=40, render_mode="rgb_array"))
@@ -173,16 +173,16 @@ def test_depth_formats_agree() -> None:
 def test_seed_starts_at_world_0_and_resets_advance() -> None:
     env = bare(FIND, variant="red", modalities="state", info="full")
     variant = driftworld.variant("find_objects#red")
-    places = []
+    origins = []
     for seed in (11, None, None, 11, None, 12):
         _, info = env.reset(seed=seed)
-        places.append((info["seed"], info["index"]))
+        origins.append((info["seed"], info["index"]))
         assert info["variant_id"] == "find_objects#red"
         assert info["task_id"] == "find_objects"
         # The environment's options are applied to the sampled world.
         sampled = variant.sample(info["seed"], info["index"])
         assert sampled["objects"] == env.state()["objects"]
-    assert places == [(11, 0), (11, 1), (11, 2), (11, 0), (11, 1), (12, 0)]
+    assert origins == [(11, 0), (11, 1), (11, 2), (11, 0), (11, 1), (12, 0)]
 
 
 def test_unseeded_environment_draws_a_seed_and_keeps_it() -> None:
@@ -238,7 +238,7 @@ def test_restored_state_continues_bit_for_bit(env_id: str) -> None:
 
 
 def test_steps_report_events_and_success(small: dict[str, Any]) -> None:
-    # In a clearing the agent soon meets objects.
+    # In this variant objects are near, so the agent soon touches some.
     env = bare(FIND, variant="near", **small)
     seen: list[dict[str, Any]] = []
     env.action_space.seed(0)
@@ -250,7 +250,7 @@ def test_steps_report_events_and_success(small: dict[str, Any]) -> None:
             seen.extend(info["events"])
             if terminated or truncated:
                 break
-    assert seen, "nothing was met in 12 episodes"
+    assert seen, "no event in 12 episodes"
     assert {key for event in seen for key in event} == {"object", "tag", "stimulus", "reward", "destroyed", "effect"}
     assert any(event["reward"] > 0 for event in seen)
 
@@ -271,7 +271,7 @@ def test_success_is_reported_at_the_goal() -> None:
     assert info["is_success"] is True
 
 
-def test_too_many_steps_are_a_truncation() -> None:
+def test_step_limit_truncates() -> None:
     env = bare(FIND, modalities="state", max_steps=3)
     env.reset(seed=0)
     flags = [env.step(np.zeros(3, dtype=np.float32))[2:4] for _ in range(3)]
@@ -366,7 +366,7 @@ def test_invalid_reset_options_are_refused_and_change_nothing(options: dict[str,
 
 
 @pytest.mark.parametrize("action", [np.zeros(2), np.zeros((3, 1)), [0.0, float("nan"), 0.0], "north"], ids=str)
-def test_a_wrong_action_is_refused_and_changes_nothing(action: Any) -> None:
+def test_invalid_action_is_refused_and_changes_nothing(action: Any) -> None:
     env = bare(FIND, modalities="state")
     env.reset(seed=0)
     before = env.state()
@@ -445,7 +445,7 @@ def test_window_shows_the_rendered_image(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_images_have_the_requested_size() -> None:
-    # With both, the view from above is a square beside the agent's view.
+    # For "both", the view from above is a square beside the agent's view.
     for camera, width in (("agent", 90), ("above", 90), ("both", 150)):
         env = bare(FIND, render_mode="rgb_array", render_size=(60, 90), camera=camera)
         env.reset(seed=0)
@@ -528,7 +528,7 @@ def test_spec_has_the_step_limit_of_the_options() -> None:
     assert [again.step(again.action_space.sample())[3] for _ in range(3)] == [False, False, True]
 
 
-def test_vector_answers_for_each_environment() -> None:
+def test_vector_has_an_origin_for_each_environment() -> None:
     envs = gym.make_vec(FIND, num_envs=2, size=8, render_mode="rgb_array").unwrapped
     with pytest.raises(gym.error.ResetNeeded, match="render: found environments that had no reset"):
         envs.render()

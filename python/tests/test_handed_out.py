@@ -1,5 +1,5 @@
-"""Arrays returned by vector environments belong to the caller, who may keep, change and store them; on request they are
-read-only views.
+"""Arrays that vector environments return belong to the caller, who may keep and change them; on request they are read-only
+views.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ def sync(num_envs: int, **options: Any) -> Any:
     return spread(gym.make_vec(FIND, num_envs, vectorization_mode="sync", **{"size": 16, **options}))
 
 
-def turning(envs: Any, steps: int) -> list[Any]:
+def random_actions(envs: Any, steps: int) -> list[Any]:
     """Actions that change the image at every step."""
     envs.action_space.seed(3)
     return [envs.action_space.sample() for _ in range(steps)]
 
 
-def stored(envs: Any, steps: int) -> list[tuple[Any, Any]]:
-    """A loop in CleanRL's style: (observation, next observation), stored as returned."""
+def store_observations(envs: Any, steps: int) -> list[tuple[Any, Any]]:
+    """Pairs of observation and next observation, stored as returned, in a loop like CleanRL's."""
     pairs = []
-    actions = turning(envs, steps)
+    actions = random_actions(envs, steps)
     observation, _ = envs.reset(seed=1)
     for action in actions:
-        following, *_ = envs.step(action)
-        pairs.append((observation, following))
-        observation = following
+        next_observation, *_ = envs.step(action)
+        pairs.append((observation, next_observation))
+        observation = next_observation
     return pairs
 
 
 @pytest.mark.parametrize("modalities", ["rgb", "state", MODALITIES], ids=str)
-def test_a_loop_that_keeps_observations_keeps_those_of_gymnasiums_loop(modalities: Any) -> None:
+def test_stored_observations_equal_those_of_gymnasiums_loop(modalities: Any) -> None:
     options = {"modalities": modalities, "max_episode_steps": 7}
-    ours, theirs = stored(native(3, **options), 30), stored(sync(3, **options), 30)
+    ours, theirs = store_observations(native(3, **options), 30), store_observations(sync(3, **options), 30)
     assert first_difference(ours, theirs) is None
     if modalities == "rgb":
         assert not any(np.array_equal(*pair) for pair in ours)
@@ -68,25 +68,25 @@ def test_writing_into_returned_arrays_changes_nothing(
     options = {"modalities": modalities, "task_label": label, "autoreset_mode": mode, "max_episode_steps": 4}
     ours, other = native(2, **options), native(2, **options)
 
-    def spoil(told: Any) -> None:
-        for part in told.values() if isinstance(told, dict) else told:
+    def overwrite(result: Any) -> None:
+        for part in result.values() if isinstance(result, dict) else result:
             if isinstance(part, dict):
-                spoil(part)
+                overwrite(part)
             elif isinstance(part, np.ndarray) and part.dtype != object:
                 part[...] = part.dtype.type(1)
 
-    for action in [None, *turning(ours, 9)]:
+    for action in [None, *random_actions(ours, 9)]:
         left = ours.reset(seed=seed) if action is None else ours.step(action)
         right = other.reset(seed=seed) if action is None else other.step(action)
         assert first_difference(left, right) is None
-        spoil(right)
+        overwrite(right)
 
 
 def test_views_are_equal_and_read_only() -> None:
     options = {"modalities": MODALITIES, "task_label": "observation"}
     views, copies = native(3, copy=False, **options), native(3, **options)
     seen, kept = views.reset(seed=0)[0], copies.reset(seed=0)[0]
-    for action in turning(views, 5):
+    for action in random_actions(views, 5):
         assert first_difference(seen, kept) is None
         for name, array in seen.items():
             with pytest.raises(ValueError, match="read-only"):
@@ -122,15 +122,15 @@ def test_second_thread_is_refused_with_a_message() -> None:
     envs.step(action)
     busy = threading.Thread(target=envs._members.batch.repeat, args=(300,))
     busy.start()
-    refused: set[str] = set()
+    messages: set[str] = set()
     while busy.is_alive():
         try:
             envs.step(action)
         except RuntimeError as error:
-            refused.add(str(error))
+            messages.add(str(error))
     busy.join()
-    assert len(refused) == 1
-    assert "found it in use by another thread, expected one thread at a time" in refused.pop()
+    assert len(messages) == 1
+    assert "found it in use by another thread, expected one thread at a time" in messages.pop()
 
 
 def test_threads_can_write_into_one_log(tmp_path: Any) -> None:
@@ -162,8 +162,8 @@ def test_threads_can_write_into_one_log(tmp_path: Any) -> None:
 
 @pytest.mark.learners
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
-def test_sb3s_replay_buffer_holds_what_was_seen(modalities: Any) -> None:
-    pytest.importorskip("stable_baselines3", reason="the buffer is its")
+def test_sb3_replay_buffer_stores_the_observations(modalities: Any) -> None:
+    pytest.importorskip("stable_baselines3", reason="tests its replay buffer")
     from stable_baselines3.common.buffers import DictReplayBuffer, ReplayBuffer
 
     steps, options = 20, {"modalities": modalities, "actions": "discrete", "size": 40}
@@ -171,12 +171,12 @@ def test_sb3s_replay_buffer_holds_what_was_seen(modalities: Any) -> None:
     for envs in (native(2, **options), sync(2, **options)):
         kind = DictReplayBuffer if isinstance(modalities, list) else ReplayBuffer
         buffer = kind(2 * steps, envs.single_observation_space, envs.single_action_space, device="cpu", n_envs=2)
-        actions = turning(envs, steps)
+        actions = random_actions(envs, steps)
         observation, _ = envs.reset(seed=1)
         for action in actions:
-            following, reward, terminated, truncated, _ = envs.step(action)
-            buffer.add(observation, following, action, reward, terminated | truncated, [{}, {}])
-            observation = following
+            next_observation, reward, terminated, truncated, _ = envs.step(action)
+            buffer.add(observation, next_observation, action, reward, terminated | truncated, [{}, {}])
+            observation = next_observation
         buffers.append(buffer)
     for name in ("observations", "next_observations"):
         left, right = (getattr(buffer, name) for buffer in buffers)
@@ -186,7 +186,7 @@ def test_sb3s_replay_buffer_holds_what_was_seen(modalities: Any) -> None:
 @pytest.mark.learners
 @pytest.mark.filterwarnings("ignore")
 def test_rllib_runner_stores_the_observations() -> None:
-    pytest.importorskip("ray.rllib", reason="the runner is its")
+    pytest.importorskip("ray.rllib", reason="tests its env runner")
     from ray.rllib.algorithms.ppo import PPOConfig
     from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
     from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
@@ -213,29 +213,29 @@ def test_rllib_runner_stores_the_observations() -> None:
         info = episode.get_infos(0)
         alone = gym.make(FIND, modalities="state", actions="discrete", size=16, disable_env_checker=True).unwrapped
         first, _ = alone.reset(seed=int(info["seed"]), options={"index": int(info["index"])})
-        lived = [first, *(alone.step(int(action))[0] for action in episode.get_actions())]
-        assert np.array_equal(seen, np.stack(lived))
+        replayed = [first, *(alone.step(int(action))[0] for action in episode.get_actions())]
+        assert np.array_equal(seen, np.stack(replayed))
     runner.stop()
 
 
 @pytest.mark.learners
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
 def test_gymnasium_wrapper_converts_everything_to_torch(mode: str) -> None:
-    torch = pytest.importorskip("torch", reason="the tensors are its")
+    torch = pytest.importorskip("torch", reason="needs PyTorch")
     options = {"modalities": ["rgb", "state"], "max_episode_steps": 3, "task_label": "info", "autoreset_mode": mode}
     for copy in (True, False):
         plain, envs = native(2, info="full", **options), gym.wrappers.vector.NumpyToTorch(native(2, copy=copy, info="full", **options))
-        told, found = plain.reset(seed=0), envs.reset(seed=0)
-        assert found[1]["variant_id"].tolist() == told[1]["variant_id"].tolist()
-        for action in turning(plain, 8):
-            told, found = plain.step(action), envs.step(torch.tensor(action))
+        wanted, found = plain.reset(seed=0), envs.reset(seed=0)
+        assert found[1]["variant_id"].tolist() == wanted[1]["variant_id"].tolist()
+        for action in random_actions(plain, 8):
+            wanted, found = plain.step(action), envs.step(torch.tensor(action))
             for name in ("rgb", "state"):
                 assert isinstance(found[0][name], torch.Tensor)
-                assert np.array_equal(found[0][name].numpy(), told[0][name])
-            assert found[4].keys() == told[4].keys()
-            assert found[4]["is_success"].tolist() == told[4]["is_success"].tolist()
-            if "final_obs" in told[4]:
-                last, expected = found[4]["final_obs"][0]["rgb"], told[4]["final_obs"][0]["rgb"]
+                assert np.array_equal(found[0][name].numpy(), wanted[0][name])
+            assert found[4].keys() == wanted[4].keys()
+            assert found[4]["is_success"].tolist() == wanted[4]["is_success"].tolist()
+            if "final_obs" in wanted[4]:
+                last, expected = found[4]["final_obs"][0]["rgb"], wanted[4]["final_obs"][0]["rgb"]
                 assert np.array_equal(last.numpy(), expected)
     single = gym.wrappers.NumpyToTorch(gym.make(FIND, modalities="rgb", size=16, info="full"))
     observation, info = single.reset(seed=0)
@@ -253,7 +253,7 @@ def test_step_writes_into_the_callers_arrays(modalities: Any) -> None:
         rows = [{kind: np.zeros_like(array) for kind, array in first.items()} for _ in range(5)]
     else:
         rows = list(np.zeros((5, *first.shape), first.dtype))
-    actions = turning(ours, len(rows))
+    actions = random_actions(ours, len(rows))
     expected = []
     for row, action in zip(rows, actions):
         written = ours.step(action, out=row)

@@ -1,4 +1,4 @@
-"""Ctrl-C ends long native calls from within."""
+"""Ctrl-C ends long native calls before they finish."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 #: Each call would run far longer than the test's time limit.
 CALLS = {
     "sample_many": "driftworld.variant('scavenger_hunt').sample_many_json(10**6)",
-    "portions_quickly_drawn": "driftworld.TaskSpec.from_dict({'name': 'tiny'}).variant().sample_many_json(10**7)",
+    "many_quick_samples": "driftworld.TaskSpec.from_dict({'name': 'tiny'}).variant().sample_many_json(10**7)",
     "distance_matrix": "driftworld.distance_matrix(variants, by='worlds')",
     "distance": "driftworld.distance('find_objects#blue', 'find_objects#red', worlds=100000)",
 }
@@ -33,11 +33,11 @@ except KeyboardInterrupt:
 @pytest.mark.parametrize("call", CALLS)
 def test_ctrl_c_ends_a_long_call(call: str) -> None:
     program = PROGRAM.format(call=CALLS[call])
-    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
-    assert (said.stdout, said.returncode) == ("interrupted\n", 0), said.stderr
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert (process.stdout, process.returncode) == ("interrupted\n", 0), process.stderr
 
 
-ASKED = """
+SIGNAL_HANDLERS = """
 import os, pathlib, signal
 import driftworld
 
@@ -58,5 +58,5 @@ for _ in range(2):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="signals are seen in /proc")
 def test_python_keeps_its_signal_handlers() -> None:
-    said = subprocess.run([sys.executable, "-c", ASKED], capture_output=True, text=True, timeout=120, check=False)
-    assert (said.stdout, said.returncode) == ("interrupted\ninterrupted\n", 0), said.stderr
+    process = subprocess.run([sys.executable, "-c", SIGNAL_HANDLERS], capture_output=True, text=True, timeout=120, check=False)
+    assert (process.stdout, process.returncode) == ("interrupted\ninterrupted\n", 0), process.stderr

@@ -50,12 +50,12 @@ def test_fisher_of_a_softmax_linear_policy_matches_the_formula() -> None:
     network = SoftmaxLinear(POLICY)
     found = module("ewc").fisher(network, STATES, chunk=2)
     # ∂ log π(a|s) / ∂W[k, j] = (1[a = k] − π(k|s)) xⱼ; so Σₐ π(a|s) (…)² = π(k|s) (1 − π(k|s)) xⱼ².
-    by_hand = np.zeros((3, 2))
+    expected = np.zeros((3, 2))
     for state in STATES.numpy():
         exponents = np.exp(POLICY.numpy() @ state)
         policy = exponents / exponents.sum()
-        by_hand += np.outer(policy * (1 - policy), state**2) / len(STATES)
-    assert found["policy.weight"].numpy() == pytest.approx(by_hand, abs=1e-6)
+        expected += np.outer(policy * (1 - policy), state**2) / len(STATES)
+    assert found["policy.weight"].numpy() == pytest.approx(expected, abs=1e-6)
     assert not found["value.weight"].any() and not found["value.bias"].any()
 
 
@@ -98,8 +98,8 @@ def test_springs_pull_towards_the_weights_at_the_border(kind: str) -> None:
         # Importances have mean 1 over all tensors but the value head.
         policy = sum(number for name, number in numbers.items() if not name.startswith("value."))
         assert loss.item() == pytest.approx(0.5 * 3.0 * 0.01 * policy, rel=1e-3)
-        (importance, at), = learner.springs  # fmt: skip
-        assert all(torch.equal(at[name], weight) for name, weight in anchor.items())
+        (importance, anchors), = learner.springs  # fmt: skip
+        assert all(torch.equal(anchors[name], weight) for name, weight in anchor.items())
         gradient = learner.network.policy.weight.grad
         assert torch.allclose(gradient, 3.0 * 0.1 * importance["policy.weight"], atol=1e-6)
 
@@ -125,7 +125,7 @@ def test_fisher_uses_the_last_observations_of_the_ending_task() -> None:
     expected = module("ewc").normalized(module("ewc").fisher(learner.network, seen))
     for name, values in learner.springs[0][0].items():
         assert torch.allclose(values, expected[name], rtol=1e-3, atol=1e-4)
-    assert not learner.rollout.active.any(), "its observations do not count for the next task"
+    assert not learner.rollout.active.any(), "its observations are not used for the next task"
 
 
 # --- PackNet ---
@@ -145,7 +145,7 @@ def test_frozen_weights_stay_bit_identical_under_adam() -> None:
         assert torch.equal(before[name][mask], after[name][mask]), name
     moved = {name: not torch.equal(before[name], after[name]) for name in owned if after[name].dim() > 1}
     assert all(moved.values()), "free weights learn in every layer"
-    # Retraining changes only the task's own weights: pruned ones stay 0.
+    # Retraining changes only the task's own weights; pruned weights stay 0.
     for name, rows in learner.owners.items():
         assert not after[name][rows == 0].any()
 
@@ -240,17 +240,17 @@ def test_reservoir_follows_its_seed_and_skips_idle_environments() -> None:
 
 
 def test_v_trace_on_a_chain_of_two_states_gives_the_known_values() -> None:
-    """In A the action `go` leads to B and pays 1; in B it ends the episode and pays 2. `stay` pays 0 and does nothing.
+    """In state A the action `go` leads to B and pays 1; in B it ends the episode and pays 2. `stay` pays 0 and does nothing.
 
     The target policy always goes: V(A) = 1 + γ 2, V(B) = 2. The behaviour policy goes half of the time.
     """
     clear, discount, rollouts = module("clear"), 0.9, 400
-    chance = torch.Generator().manual_seed(1)
+    rng = torch.Generator().manual_seed(1)
     length = 6
     rollout = package().Rollout(length, rollouts, 8, 2)
     state, states = torch.zeros(rollouts, dtype=torch.long), []
     for t in range(length):
-        goes = torch.rand(rollouts, generator=chance) < 0.5
+        goes = torch.rand(rollouts, generator=rng) < 0.5
         states.append(state)
         rollout.actions[t], rollout.rewards[t] = goes.long(), goes * (1.0 + state)
         rollout.terminated[t] = rollout.ended[t] = goes & (state == 1)
@@ -264,7 +264,7 @@ def test_v_trace_on_a_chain_of_two_states_gives_the_known_values() -> None:
     # The known values are V-trace's fixed point, whatever the actions.
     assert torch.allclose(targets, known[seen[:-1]], atol=1e-5)
     assert torch.allclose(advantages, torch.zeros_like(advantages), atol=1e-5)
-    # From wrong values, iterating the mean targets of each state converges to the known ones.
+    # Starting from wrong values, iterating the mean targets of each state converges to the known values.
     values = torch.zeros(2)
     for _ in range(60):
         targets, _ = clear.v_trace(rollout, values[seen], log_ratio, discount)
@@ -293,9 +293,9 @@ def test_cloning_loss_is_0_at_the_old_policy_and_values_and_pulls_back() -> None
         learner.rollout.values[7] = learner.values_of(learner.rollout.images[7], torch.arange(4))
     old = learner.rollout.first(7)
     with torch.no_grad():
-        here = learner.replay_loss(old).item()
+        at_old_policy = learner.replay_loss(old).item()
         learner.policy_cloning = learner.value_cloning = 0.0
-        assert learner.replay_loss(old).item() == pytest.approx(here, abs=1e-6)
+        assert learner.replay_loss(old).item() == pytest.approx(at_old_policy, abs=1e-6)
         for weight in learner.network.parameters():
             weight.add_(0.05)
         without = learner.replay_loss(old).item()

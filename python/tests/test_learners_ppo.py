@@ -1,5 +1,5 @@
-"""PPO: advantages match a direct sum, idle environments are not learned from, evaluations do not change learning, and
-resumption is bit-exact.
+"""PPO: advantages match a direct sum, steps of idle environments are not learned from, evaluations do not change
+learning, and resumed runs are identical bit for bit.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import driftworld
 import numpy as np
 import pytest
 from conftest import ROOT
-from small_learners import OPTIONS, Steps, curriculum, live, package, small
+from small_learners import OPTIONS, Steps, curriculum, package, run_lifetime, small
 
 needs_torch = pytest.mark.learners
 
@@ -52,16 +52,16 @@ def test_import_without_torch_names_the_package_to_install(monkeypatch: pytest.M
 @needs_torch
 def test_advantages_equal_the_direct_sum_within_episodes(learners: Any) -> None:
     torch = sys.modules["torch"]
-    chance = torch.Generator().manual_seed(1)
+    rng = torch.Generator().manual_seed(1)
     length, envs, discount, trace = 12, 5, 0.9, 0.8
     rollout = learners.Rollout(length, envs, 8, 5)
     for name in ("rewards", "values", "last_values"):
-        getattr(rollout, name).normal_(generator=chance)
-    rollout.terminated = torch.rand(length, envs, generator=chance) < 0.2
-    rollout.ended = rollout.terminated | (torch.rand(length, envs, generator=chance) < 0.2)
+        getattr(rollout, name).normal_(generator=rng)
+    rollout.terminated = torch.rand(length, envs, generator=rng) < 0.2
+    rollout.ended = rollout.terminated | (torch.rand(length, envs, generator=rng) < 0.2)
     found = importlib.import_module("driftworld.learners.rollout").gae(rollout, discount, trace)
 
-    def surprise(t: int, env: int) -> float:
+    def td_error(t: int, env: int) -> float:
         following = rollout.last_values[t, env] if rollout.ended[t, env] else rollout.values[t + 1, env]
         following = 0.0 if rollout.terminated[t, env] else following
         return float(rollout.rewards[t, env] + discount * following - rollout.values[t, env])
@@ -69,7 +69,7 @@ def test_advantages_equal_the_direct_sum_within_episodes(learners: Any) -> None:
     for env in range(envs):
         for t in range(length):
             end = next((k for k in range(t, length) if rollout.ended[k, env]), length - 1)
-            expected = sum((discount * trace) ** (k - t) * surprise(k, env) for k in range(t, end + 1))
+            expected = sum((discount * trace) ** (k - t) * td_error(k, env) for k in range(t, end + 1))
             assert found[t, env].item() == pytest.approx(expected, abs=1e-5)
 
 
@@ -102,16 +102,16 @@ def test_idle_environments_are_not_learned_from(learners: Any, kind: str) -> Non
     torch = sys.modules["torch"]
     digests = []
     for noise in (0, 1):
-        learner, chance = small(kind), np.random.default_rng(5)
+        learner, rng = small(kind), np.random.default_rng(5)
         other = np.random.default_rng(noise)
         for env in range(4):
             learner.begin(env, None, env)
         idle = np.array([False, False, True, True])
         for _ in range(8):
-            images = chance.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
-            following = chance.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
+            images = rng.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
+            following = rng.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
             images[idle] = other.integers(0, 256, (2, 8, 8, 3), dtype=np.uint8)
-            rewards = np.where(idle, other.random(4), chance.random(4))
+            rewards = np.where(idle, other.random(4), rng.random(4))
             actions = learner.act(images, {})
             no = np.zeros(4, dtype=bool)
             learner.learn(driftworld.VectorTransition(images, actions, rewards, no, no, following, ~idle, {}))
@@ -125,14 +125,14 @@ def test_idle_environments_are_not_learned_from(learners: Any, kind: str) -> Non
 def test_saved_learner_continues_to_the_same_digest(learners: Any, kind: str, tmp_path: Path) -> None:
     whole, half = small(kind), small(kind)
     for learner in (whole, half):
-        live(learner, None, "left")
+        run_lifetime(learner, None, "left")
     assert whole.updates > 0 and whole.digest() == half.digest()
     half.save(tmp_path / "saved")
     again = small(kind, seed=3)
     again.load(tmp_path / "saved")
     assert again.digest() == half.digest()
     for learner in (whole, again):
-        live(learner, None, "right")
+        run_lifetime(learner, None, "right")
     assert again.digest() == whole.digest() != half.digest()
     report = again.report()
     assert report["decisions"] == whole.decisions and report["tasks"] == (2 if whole.borders == "labels" else 1)
@@ -144,13 +144,13 @@ def test_saved_learner_continues_to_the_same_digest(learners: Any, kind: str, tm
     "kind, borders", [("PackNet", "labels"), ("OnlineEWC", "blocks"), ("CLEAR", "none"), ("RecurrentPPO", "none")]
 )
 def test_killed_lifetime_resumes_to_the_same_digest(learners: Any, kind: str, borders: str, tmp_path: Path) -> None:
-    whole = live(small(kind, borders=borders), tmp_path / "whole", "left", "right")
+    whole = run_lifetime(small(kind, borders=borders), tmp_path / "whole", "left", "right")
     seen = 0
 
     def kill(experience: Any, reward: float) -> bool:
         nonlocal seen
         seen += 1
-        # During the second learning block: the last save was made before the evaluation.
+        # This is in the second learning block; the last save was before the evaluation.
         return seen < 45
 
     plan = curriculum("left", "right", learn=24)
@@ -167,7 +167,7 @@ def test_evaluations_do_not_change_learning(learners: Any, kind: str) -> None:
     # run_vector refuses a learner that acts differently in a repeated evaluation.
     digests = set()
     for policy, evaluate in (("sampled", 4), ("sampled", 9), ("greedy", 4)):
-        digests.add(live(small(kind, policy=policy), None, "left", "right", evaluate=evaluate).digest())
+        digests.add(run_lifetime(small(kind, policy=policy), None, "left", "right", evaluate=evaluate).digest())
     assert len(digests) == 1
 
 
@@ -180,7 +180,7 @@ def test_global_random_numbers_are_neither_used_nor_changed(learners: Any) -> No
         np.random.seed(seed)
         before = torch.get_rng_state(), np.random.get_state()[1].copy()
         for kind in ("EWC", "CLEAR", "ShrinkAndPerturb"):
-            digests.add(live(small(kind), None, "left", "right").digest())
+            digests.add(run_lifetime(small(kind), None, "left", "right").digest())
         assert torch.equal(before[0], torch.get_rng_state())
         assert (before[1] == np.random.get_state()[1]).all()
     assert len(digests) == 3
@@ -202,23 +202,23 @@ def test_task_borders_follow_the_option(learners: Any) -> None:
     found = {}
     for borders in ("none", "labels", "blocks"):
         learner = Noting(5, 4, size=8, borders=borders, settings=learners.Settings(rollout=8, minibatch=16))
-        found[borders] = [row[:2] for row in live(learner, None, "left", "left", "right").noted]
-        assert all(time == 0 for *_, time in learner.noted), "a border finds nothing that was not learned from"
+        found[borders] = [row[:2] for row in run_lifetime(learner, None, "left", "left", "right").noted]
+        assert all(time == 0 for *_, time in learner.noted), "at a border, every step so far has been learned from"
     first, left, right = found["none"][0], found["labels"][0][1], found["labels"][-1][1]
     assert "left" in str(left) and "right" in str(right)
     assert found["none"] == [first] == [("begin", left)]
     assert found["labels"] == [("begin", left), ("end", left), ("begin", right)]
     assert found["blocks"] == [("begin", left), ("end", left), ("begin", left), ("end", left), ("begin", right)]
     with pytest.raises(ValueError, match=r'without a label.*task_label="info".*borders="blocks"'):
-        live(small("EWC"), None, "left", task_label="none")
-    live(small("EWC", borders="blocks"), None, "left", "right", task_label="none")
+        run_lifetime(small("EWC"), None, "left", task_label="none")
+    run_lifetime(small("EWC", borders="blocks"), None, "left", "right", task_label="none")
 
 
 @needs_torch
 def test_finished_log_refuses_a_learner_made_otherwise(learners: Any, tmp_path: Path) -> None:
     log = tmp_path / "log"
-    digest = live(small("L2", strength=0.5), log, "left").digest()
-    assert live(small("L2", strength=0.5), log, "left").digest() == digest
+    digest = run_lifetime(small("L2", strength=0.5), log, "left").digest()
+    assert run_lifetime(small("L2", strength=0.5), log, "left").digest() == digest
     for options, place in [
         ({"seed": 4}, "seed: found 3, expected 4"),
         ({"strength": 0.25}, "strength: found 0.5, expected 0.25"),
@@ -226,7 +226,7 @@ def test_finished_log_refuses_a_learner_made_otherwise(learners: Any, tmp_path: 
         ({"settings": learners.Settings(rollout=8, minibatch=16, clip=0.1)}, "settings/clip: found 0.2, expected 0.1"),
     ]:
         with pytest.raises(driftworld.CurriculumError, match=f"/made_from/agent/{place} as in this run"):
-            live(small("L2", **{"strength": 0.5, **options}), log, "left")
+            run_lifetime(small("L2", **{"strength": 0.5, **options}), log, "left")
 
 
 @needs_torch
@@ -251,7 +251,7 @@ def test_loss_that_is_not_finite_ends_the_run(learners: Any, value: Any) -> None
             return sys.modules["torch"].tensor([float(value)]) if value == "inf" else value
 
     with pytest.raises(ValueError, match=f"own: extra_loss: found {value} in update 1, expected a finite number"):
-        live(small(Own), None, "left")
+        run_lifetime(small(Own), None, "left")
 
 
 @needs_torch
@@ -308,12 +308,12 @@ def test_method_is_named_and_noted_after_its_class(learners: Any, tmp_path: Path
         pull = 1.0
 
     log = tmp_path / "log"
-    assert live(small(OwnMethod), log, "left").report()["learner"] == "own_method"
+    assert run_lifetime(small(OwnMethod), log, "left").report()["learner"] == "own_method"
     with pytest.raises(driftworld.CurriculumError, match=r'/agent: found "own_method", expected "ppo"'):
-        live(small(), log, "left")
+        run_lifetime(small(), log, "left")
     OwnMethod.pull = 2.0
     with pytest.raises(driftworld.CurriculumError, match=r"/made_from/agent/pull: found 1\.0, expected 2\.0"):
-        live(small(OwnMethod), log, "left")
+        run_lifetime(small(OwnMethod), log, "left")
 
 
 @needs_torch
@@ -332,16 +332,16 @@ def test_arguments_of_any_kind_are_noted(learners: Any) -> None:
 def test_seeds_of_learners_differ_between_lifetimes(learners: Any, tmp_path: Path) -> None:
     logs = [tmp_path / str(seed) for seed in (1, 2)]
     for seed, log in enumerate(logs):
-        live(small(seed=seed), log, "left", "right")
+        run_lifetime(small(seed=seed), log, "left", "right")
     assert driftworld.metrics(logs).varied["run_seed"] is True
 
 
 @needs_torch
 def test_action_table_of_another_length_is_refused(learners: Any, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="actions: found 4 rows, expected 5 rows as in the agent's num_actions"):
-        live(small(), tmp_path / "log", "left", actions=OPTIONS["actions"][:4])
+        run_lifetime(small(), tmp_path / "log", "left", actions=OPTIONS["actions"][:4])
     with pytest.raises(ValueError, match=r"actions: found no table, expected 5 rows.*pass actions="):
-        live(small(), tmp_path / "log", "left", actions="normalized")
+        run_lifetime(small(), tmp_path / "log", "left", actions="normalized")
     assert not (tmp_path / "log").exists()
 
 
@@ -384,7 +384,7 @@ def test_more_environments_than_declared_are_refused(learners: Any) -> None:
 @needs_torch
 def test_images_of_the_wrong_size_are_refused_with_the_matching_options(learners: Any) -> None:
     with pytest.raises(ValueError, match=r'found observations \(4, 16, 16, 3\).*modalities="rgb", size=8'):
-        live(small(), None, "left", size=16)
+        run_lifetime(small(), None, "left", size=16)
 
 
 @needs_torch
@@ -414,13 +414,13 @@ def test_the_learning_rate_falls_to_a_tenth_within_a_task(learners: Any) -> None
 
 @needs_torch
 def test_ppo_learns_a_t_maze_in_20_000_decisions(learners: Any) -> None:
-    learner, began = learners.PPO(5, 32, seed=1), time.process_time()
+    learner, start = learners.PPO(5, 32, seed=1), time.process_time()
     options = {**OPTIONS, "size": 32, "num_envs": 32, "num_threads": 1}
     summary = curriculum("left", learn=1500, evaluate=64).run_vector(learner, **options)
     before, _, after = summary.regimes
     assert before["success_rate"] < 0.7 and after["success_rate"] > 0.95
     assert learner.decisions < 25_000
-    assert time.process_time() - began < 30
+    assert time.process_time() - start < 30
 
 
 @needs_torch

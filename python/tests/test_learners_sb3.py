@@ -1,4 +1,4 @@
-"""Stable-Baselines3 models in curricula learn as with their own ``learn``, and evaluations do not change them."""
+"""In curricula, Stable-Baselines3 models learn as with their own ``learn``, and evaluations do not change them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TOTAL = 96
 
 
 def curriculum(learn: int, *, evaluate: int = 0, seed: int = 4, task_label: str = "none") -> Curriculum:
-    """One task; or, with evaluations, two tasks, evaluated before, between and after."""
+    """One task; or, with evaluations, two tasks that are evaluated before, between and after learning."""
 
     def block(kind: str, *variants: str) -> dict[str, Any]:
         count = learn if kind == "learning" else evaluate
@@ -47,8 +47,8 @@ def curriculum(learn: int, *, evaluate: int = 0, seed: int = 4, task_label: str 
     return Curriculum.from_dict({"version": 1, "name": "small", "task_label": task_label, "blocks": blocks})
 
 
-def made(kind: str, env: Any, **settings: Any) -> Any:
-    sb3 = pytest.importorskip("stable_baselines3", reason="the models are its")
+def make_model(kind: str, env: Any, **settings: Any) -> Any:
+    sb3 = pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     pytest.importorskip("torch").set_num_threads(1)
     name, _, _ = kind.partition(" ")
     dictionary = isinstance(env.observation_space, gym.spaces.Dict)
@@ -57,18 +57,18 @@ def made(kind: str, env: Any, **settings: Any) -> Any:
     return getattr(sb3, name)(policy, env, device="cpu", policy_kwargs=small, **{"seed": 3, **MODELS[kind][0], **settings})
 
 
-def shows(plan: Curriculum, num_envs: int, **options: Any) -> Any:
-    """Environments that give a model its spaces."""
+def make_envs(plan: Curriculum, num_envs: int, **options: Any) -> Any:
+    """Environments that define a model's spaces."""
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     return DummyVecEnv([lambda: plan.environment(**options)] * num_envs)
 
 
-def agent_of(kind: str, plan: Curriculum, num_envs: int = 1, total: int = TOTAL, policy: str | None = None, **settings: Any) -> Any:
-    pytest.importorskip("stable_baselines3", reason="the models are its")
+def make_agent(kind: str, plan: Curriculum, num_envs: int = 1, total: int = TOTAL, policy: str | None = None, **settings: Any) -> Any:
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import Agent
 
-    return Agent(made(kind, shows(plan, num_envs, **MODELS[kind][1]), **settings), total_timesteps=total, policy=policy)
+    return Agent(make_model(kind, make_envs(plan, num_envs, **MODELS[kind][1]), **settings), total_timesteps=total, policy=policy)
 
 
 def digest(model: Any) -> str:
@@ -76,43 +76,43 @@ def digest(model: Any) -> str:
     return hashlib.sha256(b"".join(value.numpy().tobytes() for value in model.policy.state_dict().values())).hexdigest()
 
 
-def watched(model: Any) -> list[tuple[int, str]]:
+def record_updates(model: Any) -> list[tuple[int, str]]:
     """Records each update: the number of decisions so far, and the weights."""
     updates: list[tuple[int, str]] = []
     train = model.train
 
-    def noted(*arguments: Any, **options: Any) -> None:
+    def train_and_record(*arguments: Any, **options: Any) -> None:
         train(*arguments, **options)
         updates.append((model.num_timesteps, digest(model)))
 
-    model.train = noted
+    model.train = train_and_record
     return updates
 
 
-class Dealt(gym.Wrapper[Any, Any, Any, Any]):
-    """An environment whose resets take the next experience of a plan; several environments share the plan."""
+class PlannedEnv(gym.Wrapper[Any, Any, Any, Any]):
+    """Starts the next experience of a plan at each reset; several environments share the plan."""
 
-    def __init__(self, env: Any, plan: Curriculum, dealt: list[int]) -> None:
+    def __init__(self, env: Any, plan: Curriculum, started: list[int]) -> None:
         super().__init__(env)
-        self._plan, self._dealt = plan._plan, dealt
+        self._plan, self._started = plan._plan, started
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
-        self._dealt.append(len(self._dealt))
-        return self.env.reset(options={"world": self._plan.world(self._dealt[-1])})
+        self._started.append(len(self._started))
+        return self.env.reset(options={"world": self._plan.world(self._started[-1])})
 
 
 @pytest.mark.parametrize(("kind", "num_envs"), [*((kind, 1) for kind in MODELS), ("PPO", 4), ("PPO numbers", 4), ("A2C", 4), ("DQN", 4), ("TD3", 4)])
 def test_model_learns_the_same_weights_as_with_its_own_learn(kind: str, num_envs: int) -> None:
-    pytest.importorskip("stable_baselines3", reason="the models are its")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     plan, options = curriculum(18), MODELS[kind][1]
-    dealt: list[int] = []
-    own = made(kind, DummyVecEnv([lambda: Dealt(plan.environment(**options), plan, dealt)] * num_envs))
-    expected = watched(own)
+    started: list[int] = []
+    own = make_model(kind, DummyVecEnv([lambda: PlannedEnv(plan.environment(**options), plan, started)] * num_envs))
+    expected = record_updates(own)
     own.learn(TOTAL)
-    agent = agent_of(kind, plan, num_envs)
-    found = watched(agent.model)
+    agent = make_agent(kind, plan, num_envs)
+    found = record_updates(agent.model)
     if num_envs == 1:
         plan.run(agent, **options)
     else:
@@ -127,8 +127,8 @@ def test_evaluations_change_no_weights(kind: str, num_envs: int) -> None:
     found = []
     for evaluate in (1, 5):
         plan = curriculum(8, evaluate=evaluate)
-        agent = agent_of(kind, plan, num_envs, policy="sampled")
-        updates = watched(agent.model)
+        agent = make_agent(kind, plan, num_envs, policy="sampled")
+        updates = record_updates(agent.model)
         run = plan.run_vector if num_envs > 1 else plan.run
         run(agent, **MODELS[kind][1], **({"num_envs": num_envs} if num_envs > 1 else {}))
         found.append(updates)
@@ -137,34 +137,34 @@ def test_evaluations_change_no_weights(kind: str, num_envs: int) -> None:
 
 
 @pytest.mark.parametrize(("kind", "num_envs"), [("PPO", 1), ("PPO dict", 4), ("DQN", 4)])
-def test_killed_run_goes_on_to_the_same_weights(kind: str, num_envs: int, tmp_path: Path) -> None:
+def test_killed_run_resumes_to_the_same_weights(kind: str, num_envs: int, tmp_path: Path) -> None:
     plan = curriculum(10, evaluate=2)
 
-    def live(log: str, seed: int = 3, **options: Any) -> Any:
-        agent = agent_of(kind, plan, num_envs, seed=seed)
+    def run_log(log: str, seed: int = 3, **options: Any) -> Any:
+        agent = make_agent(kind, plan, num_envs, seed=seed)
         if num_envs == 1:
             summary = plan.run(agent, tmp_path / log, **MODELS[kind][1], **options)
         else:
             summary = plan.run_vector(agent, tmp_path / log, num_envs=num_envs, **MODELS[kind][1], **options)
         return summary, agent.model
 
-    whole, model = live("whole")
-    assert not live("killed", watch=lambda experience, _: experience.number < 22)[0].finished
-    summary, again = live("killed")
+    whole, model = run_log("whole")
+    assert not run_log("killed", watch=lambda experience, _: experience.number < 22)[0].finished
+    summary, again = run_log("killed")
     assert summary.finished and summary.regimes == whole.regimes
     assert (again.num_timesteps, digest(again)) == (model.num_timesteps, digest(model))
     saved = tmp_path / "killed.agent"
     own = type(model).load(next(saved.glob("0*")) / "model.zip", device="cpu")
     assert own.num_timesteps == model.num_timesteps
     with pytest.raises(CurriculumError, match="/made_from/agent/seed: found 3, expected 4 as in this run"):
-        live("killed", seed=4)
+        run_log("killed", seed=4)
 
 
 @pytest.mark.parametrize("kind", ["PPO", "PPO dict", "A2C"])
 def test_on_policy_update_skips_environments_without_an_experience(kind: str) -> None:
     # Four experiences of 7 steps, then the fifth alone.
     plan = curriculum(5)
-    agent = agent_of(kind, plan, 4, n_steps=14)
+    agent = make_agent(kind, plan, 4, n_steps=14)
     model, sizes, batch = agent.model, [], MODELS[kind][0].get("batch_size")
     train = model.train
     model.train = lambda: (sizes.extend(len(part.returns) for part in model.rollout_buffer.get(batch)), train())
@@ -175,7 +175,7 @@ def test_on_policy_update_skips_environments_without_an_experience(kind: str) ->
 
 def test_off_policy_rows_contain_only_steps_of_experiences() -> None:
     plan = curriculum(5)
-    agent = agent_of("DQN", plan, 4)
+    agent = make_agent("DQN", plan, 4)
     plan.run_vector(agent, num_envs=4, **OPTIONS)
     buffer = agent.model.replay_buffer
     assert (buffer.pos, agent.model.num_timesteps) == (8, 32)
@@ -185,7 +185,7 @@ def test_off_policy_rows_contain_only_steps_of_experiences() -> None:
 
 def test_model_that_remembers_evaluations_is_refused() -> None:
     plan = curriculum(2, evaluate=2)
-    agent = agent_of("PPO", plan, policy="sampled")
+    agent = make_agent("PPO", plan, policy="sampled")
     agent._evaluation_randomness = lambda _: __import__("contextlib").nullcontext()
     with pytest.raises(CurriculumError, match="once more"):
         plan.run(agent, **OPTIONS)
@@ -194,7 +194,7 @@ def test_model_that_remembers_evaluations_is_refused() -> None:
 def test_no_temporary_files_remain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     plan = curriculum(2)
-    plan.run_vector(agent_of("PPO", plan, 2), num_envs=2, **OPTIONS)
+    plan.run_vector(make_agent("PPO", plan, 2), num_envs=2, **OPTIONS)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -205,12 +205,12 @@ def test_label_in_the_observation_reaches_the_model() -> None:
     assert set(env.observation_space.spaces) == {"rgb", "task"}
     from driftworld.adapters.sb3 import Agent
 
-    model = made("PPO dict", env)
+    model = make_model("PPO dict", env)
     assert plan.run(Agent(model, total_timesteps=TOTAL), **options).finished
 
 
 def test_models_that_would_learn_differently_are_refused() -> None:
-    sb3 = pytest.importorskip("stable_baselines3", reason="the models are its")
+    sb3 = pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import Agent
     from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize
 
@@ -220,22 +220,22 @@ def test_models_that_would_learn_differently_are_refused() -> None:
         with pytest.raises(error, match=match):
             Agent(model, **options)
 
-    envs = shows(plan, 2, **OPTIONS)
+    envs = make_envs(plan, 2, **OPTIONS)
     expect(TypeError, "found list", [])
-    expect(ValueError, "total_timesteps: found none for the model's exploration_schedule", made("DQN", envs))
-    expect(ValueError, "total_timesteps: found none for the model's lr_schedule", made("PPO", envs))
-    expect(ValueError, "policy: found 'best'", made("A2C", envs), policy="best")
-    expect(ValueError, "found optimize_memory_usage=True with 2", made("DQN", envs, optimize_memory_usage=True, replay_buffer_kwargs={"handle_timeout_termination": False}), total_timesteps=9)  # fmt: skip
-    expect(ValueError, "in VecNormalize", made("A2C", VecNormalize(envs, norm_obs=False)))
-    expect(ValueError, "in VecFrameStack", made("A2C", VecFrameStack(envs, 2)))
-    expect(ValueError, "use_sde", sb3.PPO("CnnPolicy", shows(plan, 1, **NUMBERS), use_sde=True, device="cpu"))
+    expect(ValueError, "total_timesteps: found none for the model's exploration_schedule", make_model("DQN", envs))
+    expect(ValueError, "total_timesteps: found none for the model's lr_schedule", make_model("PPO", envs))
+    expect(ValueError, "policy: found 'best'", make_model("A2C", envs), policy="best")
+    expect(ValueError, "found optimize_memory_usage=True with 2", make_model("DQN", envs, optimize_memory_usage=True, replay_buffer_kwargs={"handle_timeout_termination": False}), total_timesteps=9)  # fmt: skip
+    expect(ValueError, "in VecNormalize", make_model("A2C", VecNormalize(envs, norm_obs=False)))
+    expect(ValueError, "in VecFrameStack", make_model("A2C", VecFrameStack(envs, 2)))
+    expect(ValueError, "use_sde", sb3.PPO("CnnPolicy", make_envs(plan, 1, **NUMBERS), use_sde=True, device="cpu"))
 
     class OwnRollouts(sb3.PPO):  # type: ignore[misc, name-defined, unused-ignore]
         def collect_rollouts(self, *_: Any, **__: Any) -> bool:
             return True
 
     expect(TypeError, "OwnRollouts, which collects rollouts its own way", OwnRollouts("CnnPolicy", envs, device="cpu"))
-    agent = Agent(made("A2C", envs))
+    agent = Agent(make_model("A2C", envs))
     with pytest.raises(ValueError, match="expected .*; make the model with"):
         plan.run_vector(agent, num_envs=2, **{**OPTIONS, "size": 40})
     with pytest.raises(ValueError, match="num_envs=2"):

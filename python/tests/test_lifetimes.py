@@ -1,4 +1,4 @@
-"""Curricula run from Python write the same log as the command."""
+"""Curricula that Python runs write the same log as the command."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ import pytest
 from driftworld import Agent, Curriculum, CurriculumError, TaskSpec, Transition, read_log, validate_log
 from small_lifetime import SMALL, Circler, Pupil, rows, small
 
-#: Columns that do not depend on the agent.
-OF_THE_PLAN = [
+#: The columns that do not depend on the agent.
+PLAN_COLUMNS = [
     "block_num",
     "exp_num",
     "worker_id",
@@ -70,7 +70,7 @@ def test_random_agents_log_has_the_commands_form(tmp_path: Path) -> None:
 
     # The action space is not seeded, so the agent behaves differently in repeated evaluations.
     curriculum.run(Random(), tmp_path / "mine", check_frozen=False, **SMALL)
-    assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
+    assert rows(tmp_path / "mine", PLAN_COLUMNS) == rows(tmp_path / "theirs", PLAN_COLUMNS)
 
 
 def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
@@ -81,19 +81,19 @@ def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
     # Within a block, all variants share the agent's seed for the same world number; no seed recurs in another block.
-    chances = [seed for _, seed in agent.begun]
-    assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
-    assert len(set(chances)) == 2 + 2 + 3 + 2 + 3 + 2
-    # With `paired_chance`, every evaluation of a world has the same seed, and learning a different one.
+    seeds = [seed for _, seed in agent.begun]
+    assert seeds[2] == seeds[4] and seeds[5:7] == seeds[7:9]
+    assert len(set(seeds)) == 2 + 2 + 3 + 2 + 3 + 2
+    # With `paired_chance`, every evaluation of a world has the same seed, and learning has another.
     paired = Circler()
     small(max_steps=7).run(paired, check_frozen=False, paired_chance=True, **SMALL)
-    chances = [seed for _, seed in paired.begun]
-    assert chances[2:5] == chances[10:13] == chances[16:19]
-    assert len(set(chances)) == 2 + 2 + 3 + 3
+    seeds = [seed for _, seed in paired.begun]
+    assert seeds[2:5] == seeds[10:13] == seeds[16:19]
+    assert len(set(seeds)) == 2 + 2 + 3 + 3
 
 
 class Memoriser(Circler):
-    """Acts by the number of experiences so far, so that evaluations change it."""
+    """Its actions depend on the number of experiences so far, so evaluations change it."""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         return np.array([len(self.begun), 20 * (len(self.begun) % 3), 0], dtype=np.float32)
@@ -105,7 +105,7 @@ def test_agent_changed_by_evaluations_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CurriculumError, match="block 0: found another action in step 1 of experience 0 .get_to_goal#soft."):
         curriculum.run(Memoriser(), tmp_path / "log", **SMALL)
     assert curriculum.run(Memoriser(), check_frozen=False, **SMALL).finished
-    # An agent that repeats itself leaves the same log, checked or not.
+    # For an agent that acts the same in repeated evaluations, the check does not change the log.
     for name, check in [("checked", True), ("unchecked", False)]:
         curriculum.run(Pupil(), tmp_path / name, check_frozen=check, **SMALL)
     assert rows(tmp_path / "checked", ["reward"]) == rows(tmp_path / "unchecked", ["reward"])
@@ -137,15 +137,15 @@ def test_transition_matches_the_step() -> None:
     assert set(first[0].info) >= {"events", "is_success"}
 
 
-@pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
-def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> None:
+@pytest.mark.parametrize("finished", [1, 4, 6, 9, 12, 16])
+def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, finished: int) -> None:
     curriculum, undisturbed = small(), Pupil()
     curriculum.run(undisturbed, tmp_path / "whole", **SMALL)
     first, second = Pupil(), Pupil()
     stopped = curriculum.run(
-        first, tmp_path / "log", watch=lambda experience, reward: experience.number + 1 < kept, **SMALL
+        first, tmp_path / "log", watch=lambda experience, reward: experience.number + 1 < finished, **SMALL
     )
-    assert (stopped.experiences, stopped.finished) == (kept, False)
+    assert (stopped.experiences, stopped.finished) == (finished, False)
     whole = curriculum.run(second, tmp_path / "log", **SMALL)
     assert whole.finished and whole.regimes == curriculum.run(Pupil(), tmp_path / "whole", **SMALL).regimes
     assert rows(tmp_path / "log") == rows(tmp_path / "whole")
@@ -154,7 +154,7 @@ def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> N
 
 
 def test_interrupt_leaves_a_resumable_log(tmp_path: Path) -> None:
-    class Tired(Circler):
+    class Interrupting(Circler):
         def act(self, observation: Any, info: dict[str, Any]) -> Any:
             if len(self.begun) == 6:
                 raise KeyboardInterrupt
@@ -162,7 +162,7 @@ def test_interrupt_leaves_a_resumable_log(tmp_path: Path) -> None:
 
     curriculum = small()
     with pytest.raises(KeyboardInterrupt):
-        curriculum.run(Tired(), tmp_path / "log", **SMALL)
+        curriculum.run(Interrupting(), tmp_path / "log", **SMALL)
     assert len(read_log(tmp_path / "log")) == 5
     assert curriculum.run(Circler(), tmp_path / "log", **SMALL).finished
     assert len(read_log(tmp_path / "log")) == 19
@@ -225,9 +225,9 @@ def test_log_resumes_only_with_the_same_settings(tmp_path: Path) -> None:
     assert refused.value.code == "metrics/log-exists"
 
 
-@pytest.mark.parametrize("told", ["info", "observation"])
-def test_label_is_given_if_the_scenario_has_it(told: str) -> None:
-    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=1, task_label=told)
+@pytest.mark.parametrize("place", ["info", "observation"])
+def test_label_is_given_if_the_scenario_has_it(place: str) -> None:
+    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=1, task_label=place)
     agent = Circler()
     options = {**SMALL, "modalities": ["rgb"], "max_steps": 2}
     env = curriculum.environment(**options)
@@ -235,7 +235,7 @@ def test_label_is_given_if_the_scenario_has_it(told: str) -> None:
     assert {label for label, _ in agent.begun} == {"find_objects#blue", "find_objects#red"}
     numbers = {"find_objects#blue": 0, "find_objects#red": 1}
     expected = [numbers[label or ""] for label, _ in agent.begun for _ in range(2)]
-    if told == "info":
+    if place == "info":
         assert [info["task_label"] for _, info in agent.seen] == expected
         assert "task" not in env.observation_space.spaces
     else:
@@ -258,7 +258,7 @@ def test_l2explorer_scenario_runs_like_the_command(tmp_path: Path) -> None:
         regimes.append({"task": "trees", "count": count, "params": {"map": f"maps/{name}.json", "maxsteps": 5}})
     blocks = [{"type": "train", "regimes": regimes}, {"type": "test", "regimes": regimes}]
     theirs.write_text(json.dumps({"logging_base_dir": "logs", "scenario": blocks}), encoding="utf-8")
-    # A missing map is replaced by a different one: L2Explorer's own scenario needs that.
+    # Another map stands in for a missing one, because L2Explorer's own scenario lacks a map.
     min(maps.iterdir()).unlink()
     with pytest.warns(UserWarning, match="stood in for it"):
         curriculum = Curriculum.load(theirs)
@@ -275,9 +275,9 @@ def test_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, log_is: s
     small().run(Pupil(), log, watch=lambda experience, reward: experience.number < 1, **SMALL)
     assert (tmp_path / "log.agent" / "00000002").is_dir()
     shutil.rmtree(log)
-    begun = log if log_is == "deleted" else tmp_path / "elsewhere"
-    other.run(Pupil(), begun, watch=lambda experience, reward: experience.number < 2, **SMALL)
-    begun.rename(log)
+    replacement = log if log_is == "deleted" else tmp_path / "elsewhere"
+    other.run(Pupil(), replacement, watch=lambda experience, reward: experience.number < 2, **SMALL)
+    replacement.rename(log)
     pupil, undisturbed = Pupil(), Pupil()
     other.run(pupil, log, **SMALL)
     other.run(undisturbed, **SMALL)
@@ -338,7 +338,7 @@ def test_equivalent_options_are_noted_equally(tmp_path: Path) -> None:
         curriculum.run(First(), tmp_path / "log", **{**again, "modalities": "rgb"})
 
 
-#: Rocks that cannot be placed in some worlds, and a number with a forbidden middle.
+#: A task with rocks that cannot be placed in some worlds, and with a parameter that must not have values near 5.
 QUARRY = {
     "version": 2,
     "name": "quarry",
@@ -375,13 +375,13 @@ def test_undrawable_worlds_are_found_and_skipped(tmp_path: Path) -> None:
     log = tmp_path / "log"
     with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at 0\.45 of its way"):
         curriculum.run(Circler(), log, modalities="rgb", size=8)
-    paid: list[float] = []
+    seen_rewards: list[float] = []
     summary = curriculum.run(
-        Circler(), log, skip_undrawable=True, modalities="rgb", size=8, watch=lambda now, reward: paid.append(reward)
+        Circler(), log, skip_undrawable=True, modalities="rgb", size=8, watch=lambda now, reward: seen_rewards.append(reward)
     )
     assert summary.finished and summary.skipped == 3 and summary.experiences == 22
     assert [one["experience"] for one in summary.left_out] == [11, 12, 13]
-    assert [np.isnan(reward) for reward in paid[:4]] == [True, True, True, False]
+    assert [np.isnan(reward) for reward in seen_rewards[:4]] == [True, True, True, False]
     assert validate_log(log)["valid"]
     rewards = read_log(log).columns["reward"]
     assert len(rewards) == 25 and np.isnan(rewards).sum() == 3

@@ -15,7 +15,7 @@ import pytest
 from driftworld import LogWriter, MetricsError, read_log, validate_log
 
 
-def written(folder: Path, rewards: list[float]) -> Path:
+def write_log(folder: Path, rewards: list[float]) -> Path:
     info = {"scenario_type": "alternating", "author": "nobody"}
     with LogWriter(folder, ["reward"], scenario_info=info) as log:
         for number, reward in enumerate(rewards):
@@ -32,7 +32,7 @@ def written(folder: Path, rewards: list[float]) -> Path:
 
 
 def test_written_rows_are_read_back(tmp_path: Path) -> None:
-    log = read_log(written(tmp_path / "log", [1.0, math.nan, 0.1 + 0.2]))
+    log = read_log(write_log(tmp_path / "log", [1.0, math.nan, 0.1 + 0.2]))
     assert (log.run_id, len(log), sorted(log.metrics)) == ("log", 3, ["reward", "steps"])
     assert np.array_equal(log["reward"], [1.0, math.nan, 0.1 + 0.2], equal_nan=True)
     assert log["block_num"].tolist() == [0, 0, 1] and log["exp_num"].dtype == np.int64
@@ -47,12 +47,12 @@ def test_written_rows_are_read_back(tmp_path: Path) -> None:
 
 def test_log_converts_to_a_data_frame(tmp_path: Path) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
-    frame = read_log(written(tmp_path / "log", [1.0, 2.0])).to_pandas()
+    frame = read_log(write_log(tmp_path / "log", [1.0, 2.0])).to_pandas()
     assert frame["reward"].tolist() == [1.0, 2.0] and frame["task_name"].tolist() == ["find_red"] * 2
 
 
 def test_log_is_a_table_of_columns(tmp_path: Path) -> None:
-    log = read_log(written(tmp_path / "log", [1.0, math.nan, 3.0]))
+    log = read_log(write_log(tmp_path / "log", [1.0, math.nan, 3.0]))
     assert list(log) == list(log.keys()) == list(log.columns) and len(log) == 3
     assert "reward" in log and "rewrd" not in log and 3 not in log
     assert dict(log)["reward"] is log["reward"]
@@ -60,18 +60,18 @@ def test_log_is_a_table_of_columns(tmp_path: Path) -> None:
 
 
 def test_logs_are_equal_if_their_contents_are(tmp_path: Path) -> None:
-    folder = written(tmp_path / "log", [1.0, math.nan, 3.0])
+    folder = write_log(tmp_path / "log", [1.0, math.nan, 3.0])
     log = read_log(folder)
     shutil.copytree(folder, tmp_path / "again")
     assert log == read_log(tmp_path / "again") == read_log(folder)
     assert log == pickle.loads(pickle.dumps(log)) == copy.deepcopy(log)
-    assert log != read_log(written(tmp_path / "other", [1.0, math.nan, 4.0])) and log != dict(log)
+    assert log != read_log(write_log(tmp_path / "other", [1.0, math.nan, 4.0])) and log != dict(log)
     with pytest.raises(TypeError, match="unhashable"):
         hash(log)
 
 
 def test_log_follows_the_format(tmp_path: Path) -> None:
-    folder = written(tmp_path / "log", [1.0])
+    folder = write_log(tmp_path / "log", [1.0])
     lines = (folder / "worker-default" / "0-train" / "data-log.tsv").read_text(encoding="utf-8").splitlines()
     assert lines[0].split("\t") == (
         [
@@ -91,8 +91,8 @@ def test_log_follows_the_format(tmp_path: Path) -> None:
     assert validate_log(folder)["valid"] and validate_log(folder)["rows"] == 1
 
 
-def test_a_log_goes_on_where_it_stopped(tmp_path: Path) -> None:
-    folder = written(tmp_path / "log", [1.0, 2.0])
+def test_log_resumes_where_it_stopped(tmp_path: Path) -> None:
+    folder = write_log(tmp_path / "log", [1.0, 2.0])
     with pytest.raises(MetricsError) as refused:
         LogWriter(folder)
     assert refused.value.code == "metrics/log-exists"
@@ -153,7 +153,7 @@ def test_closed_log_takes_no_rows(tmp_path: Path) -> None:
 
 
 def test_problems_of_a_log_are_reported_with_their_line(tmp_path: Path) -> None:
-    folder = written(tmp_path / "log", [1.0, 2.0])
+    folder = write_log(tmp_path / "log", [1.0, 2.0])
     file = folder / "worker-default" / "0-train" / "data-log.tsv"
     file.write_text(file.read_text(encoding="utf-8").replace("\t2.0\t", "\tmuch\t"), encoding="utf-8")
     with pytest.raises(MetricsError, match="much") as refused:

@@ -1,4 +1,4 @@
-"""The benchmark's measures match the formulae of their references (scripts/golden_measures.py), and keep invariants."""
+"""The benchmark's measures match reference formulae (scripts/golden_measures.py), and satisfy invariants."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EACH_CASE = pytest.mark.parametrize("case", GOLDEN["cases"], ids=range(len(GOLDE
 
 
 def matrices(case: dict[str, Any], curves: str) -> list[Matrix]:
-    """A lifetime for each seed."""
+    """A matrix for each seed."""
     steps = tuple(np.array(each, dtype=float) for each in case["steps"] or ())
     return [
         Matrix(np.array(values), tuple(np.array(curve) for curve in seed), steps)
@@ -31,23 +31,23 @@ def near(expected: Any) -> Any:
 
 @EACH_CASE
 def test_pooled_seeds_match_continual_world_and_coom(case: dict[str, Any]) -> None:
-    lived, alone = Matrix.pooled(matrices(case, "curves")), Matrix.pooled(matrices(case, "alone"))
+    sequential, from_scratch = Matrix.pooled(matrices(case, "curves")), Matrix.pooled(matrices(case, "alone"))
     golden = case["golden"]["continual_world"]
-    assert lived.performance() == near(golden["performance"])
-    assert lived.forgetting() == near(golden["forgetting"])
-    assert lived.forward_transfer(alone) == near(golden["transfer"])
-    assert lived.coom(alone) == near(case["golden"]["coom"])
+    assert sequential.performance() == near(golden["performance"])
+    assert sequential.forgetting() == near(golden["forgetting"])
+    assert sequential.forward_transfer(from_scratch) == near(golden["transfer"])
+    assert sequential.coom(from_scratch) == near(case["golden"]["coom"])
 
 
 @EACH_CASE
 def test_gem_divides_as_in_the_paper_not_as_in_its_program(case: dict[str, Any]) -> None:
-    for lived, golden in zip(matrices(case, "curves"), case["golden"]["gem"], strict=True):
-        found, tasks = gem(lived.values), lived.values.shape[1]
+    for sequential, golden in zip(matrices(case, "curves"), case["golden"]["gem"], strict=True):
+        found, tasks = gem(sequential.values), sequential.values.shape[1]
         assert found == near({name: golden[name] for name in ("ACC", "BWT", "FWT")})
         assert found["BWT"] * (tasks - 1) / tasks == near(golden["program_BWT"])
         assert found["FWT"] * (tasks - 1) / tasks == near(golden["program_FWT"])
-        assert found["ACC"] == near(lived.performance())
-        assert found["BWT"] == near(lived.backward())
+        assert found["ACC"] == near(sequential.performance())
+        assert found["BWT"] == near(sequential.backward())
 
 
 @EACH_CASE
@@ -83,25 +83,25 @@ def test_interval_of_five_seeds_uses_all_possible_draws() -> None:
 
 
 def test_unchanged_lifetime_has_no_forgetting_and_no_transfer() -> None:
-    still = Matrix(np.tile([0.1, 0.5, 0.9], (4, 1)), tuple(np.full(5, value) for value in (0.1, 0.5, 0.9)))
-    assert still.forgetting() == still.backward() == 0
-    assert still.coom(still)["forgetting"] == 0
-    assert gem(still.values) == near({"ACC": 0.5, "BWT": 0.0, "FWT": 0.0})
-    assert all(np.nanmax(np.abs(table)) == 0 for table in cora(still.values).values())
+    unchanged = Matrix(np.tile([0.1, 0.5, 0.9], (4, 1)), tuple(np.full(5, value) for value in (0.1, 0.5, 0.9)))
+    assert unchanged.forgetting() == unchanged.backward() == 0
+    assert unchanged.coom(unchanged)["forgetting"] == 0
+    assert gem(unchanged.values) == near({"ACC": 0.5, "BWT": 0.0, "FWT": 0.0})
+    assert all(np.nanmax(np.abs(table)) == 0 for table in cora(unchanged.values).values())
 
 
 @EACH_CASE
 def test_from_scratch_against_itself_has_no_forward_transfer(case: dict[str, Any]) -> None:
-    for alone in matrices(case, "alone"):
-        assert alone.forward_transfer(alone) == alone.coom(alone)["transfer"] == 0
+    for from_scratch in matrices(case, "alone"):
+        assert from_scratch.forward_transfer(from_scratch) == from_scratch.coom(from_scratch)["transfer"] == 0
 
 
 @EACH_CASE
 def test_permuting_seeds_changes_nothing(case: dict[str, Any]) -> None:
-    lived, alone, values = matrices(case, "curves"), Matrix.pooled(matrices(case, "alone")), np.array(case["values"])
-    pooled, permuted = Matrix.pooled(lived), Matrix.pooled(lived[::-1])
-    assert permuted.forward_transfer(alone) == near(pooled.forward_transfer(alone))
-    assert permuted.coom(alone) == near(pooled.coom(alone))
+    sequential, from_scratch, values = matrices(case, "curves"), Matrix.pooled(matrices(case, "alone")), np.array(case["values"])
+    pooled, permuted = Matrix.pooled(sequential), Matrix.pooled(sequential[::-1])
+    assert permuted.forward_transfer(from_scratch) == near(pooled.forward_transfer(from_scratch))
+    assert permuted.coom(from_scratch) == near(pooled.coom(from_scratch))
     for name, table in cora(values[::-1]).items():
         np.testing.assert_allclose(table, cora(values)[name], rtol=0, atol=1e-9, equal_nan=True)
     assert interquartile_mean(values[::-1, -1]) == near(interquartile_mean(values[:, -1]))

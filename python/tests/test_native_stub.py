@@ -12,7 +12,7 @@ import driftworld
 import pytest
 from driftworld import _native
 
-#: Attributes that Python gives every class, and that PyO3 adds for comparisons.
+#: Attributes that Python gives to every class, and those that PyO3 adds for comparisons.
 EVERY_CLASS_HAS = set(dir(object)) | {"__module__", "__doc__"}
 
 
@@ -36,18 +36,18 @@ def defined(thing: type | ModuleType) -> set[str]:
 
 
 def test_stub_has_the_modules_names() -> None:
-    beside = {"__name__", "__doc__", "__package__", "__loader__", "__spec__", "__file__", "__all__"}
-    assert named(stub().body) == defined(_native) - beside
+    module_attributes = {"__name__", "__doc__", "__package__", "__loader__", "__spec__", "__file__", "__all__"}
+    assert named(stub().body) == defined(_native) - module_attributes
 
 
 def classes() -> list[ast.ClassDef]:
     return [node for node in stub().body if isinstance(node, ast.ClassDef)]
 
 
-@pytest.mark.parametrize("described", classes(), ids=lambda node: node.name)
-def test_stub_has_each_classs_names(described: ast.ClassDef) -> None:
-    real = getattr(_native, described.name)
-    assert named(described.body) - EVERY_CLASS_HAS == defined(real) - EVERY_CLASS_HAS
+@pytest.mark.parametrize("declaration", classes(), ids=lambda node: node.name)
+def test_stub_has_each_classs_names(declaration: ast.ClassDef) -> None:
+    real = getattr(_native, declaration.name)
+    assert named(declaration.body) - EVERY_CLASS_HAS == defined(real) - EVERY_CLASS_HAS
 
 
 def functions() -> list[tuple[str, ast.FunctionDef, Any]]:
@@ -70,12 +70,12 @@ def functions() -> list[tuple[str, ast.FunctionDef, Any]]:
 
 
 @pytest.mark.parametrize(
-    ("name", "described", "real"), functions(), ids=lambda value: value if isinstance(value, str) else ""
+    ("name", "declaration", "real"), functions(), ids=lambda value: value if isinstance(value, str) else ""
 )
 def test_stub_has_the_parameters_and_their_defaults(
-    name: str, described: ast.FunctionDef, real: Any
+    name: str, declaration: ast.FunctionDef, real: Any
 ) -> None:
-    arguments = described.args
+    arguments = declaration.args
     positional = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
     with_defaults = positional[len(positional) - len(arguments.defaults) :]
     with_defaults += [
@@ -89,6 +89,6 @@ def test_stub_has_the_parameters_and_their_defaults(
     found = [parameter.name for parameter in plain if parameter.name not in ("self", "cls", "slf")]
     assert found == expected
     assert [p.name for p in plain if p.default is not p.empty] == with_defaults
-    # As in `help()`, which shows a default that it cannot represent as `Ellipsis`.
-    written = [*arguments.defaults, *(default for default in arguments.kw_defaults if default is not None)]
-    assert [p.default for p in plain if p.default is not p.empty] == [ast.literal_eval(default) for default in written]
+    # `help()` shows `Ellipsis` for a default that it cannot represent.
+    defaults = [*arguments.defaults, *(default for default in arguments.kw_defaults if default is not None)]
+    assert [p.default for p in plain if p.default is not p.empty] == [ast.literal_eval(default) for default in defaults]

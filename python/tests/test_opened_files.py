@@ -1,4 +1,4 @@
-"""Devices, pipes and folders are refused wherever Python takes a path."""
+"""Devices, pipes and folders are refused by every function that reads a file."""
 
 from __future__ import annotations
 

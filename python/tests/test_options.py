@@ -1,4 +1,4 @@
-"""Options of environments and resets: valid ones have their effect, and invalid ones change nothing."""
+"""Options of environments and resets: valid ones take effect, and invalid ones change nothing."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_variants_with_different_actions_are_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"size": 64.0}, "size: found 64.0"),
         ({"modalities": 3}, "modalities: found 3, expected one of rgb"),
@@ -119,10 +119,10 @@ def test_variants_with_different_actions_are_refused() -> None:
         ({"render_size": 640}, "render_size: found 640"),
     ],
 )
-def test_wrong_option_is_named_with_its_value(options: dict[str, Any], told: str) -> None:
+def test_wrong_option_is_named_with_its_value(options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError) as error:
         env_of(**options)
-    assert str(error.value).startswith(told)
+    assert str(error.value).startswith(message)
 
 
 def test_numpy_numbers_are_accepted() -> None:

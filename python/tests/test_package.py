@@ -1,4 +1,4 @@
-"""The installed wheel: types, stubs, the command, and no dependencies but NumPy and Gymnasium."""
+"""The installed wheel has types, stubs and the command, and depends only on NumPy and Gymnasium."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def distribution() -> importlib.metadata.Distribution:
     try:
         return importlib.metadata.distribution("driftworld")
     except importlib.metadata.PackageNotFoundError:
-        pytest.skip("the package is on the path and not installed, so that it has no metadata")
+        pytest.skip("the package is on the path but not installed, so it has no metadata")
 
 
 def test_types_come_with_the_package(package: Path) -> None:
@@ -36,8 +36,8 @@ def test_only_numpy_and_gymnasium_are_needed() -> None:
 
 def test_extras_match_the_guide() -> None:
     guide = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
-    told = set(re.findall(r"^\| `\./python\[(\w+)\]`", guide, re.MULTILINE))
-    assert told == set(distribution().metadata.get_all("Provides-Extra") or [])
+    documented = set(re.findall(r"^\| `\./python\[(\w+)\]`", guide, re.MULTILINE))
+    assert documented == set(distribution().metadata.get_all("Provides-Extra") or [])
 
 
 def test_version_is_the_same_everywhere() -> None:

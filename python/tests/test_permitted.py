@@ -1,4 +1,4 @@
-"""Infos given to an agent name neither variant nor world, unless requested."""
+"""The infos of an agent name neither variant nor world, unless requested."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ NAMES = ["task_id", "variant_id", "seed", "index", "world_hash", "events"]
 
 
 class Listener(Circler):
-    """Stores all infos that it gets, and whether it was frozen."""
+    """Stores all infos that it gets, and whether it was frozen at the time."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.given: list[dict[str, Any]] = []
+        self.infos: list[dict[str, Any]] = []
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        self.given.append(info | {"frozen": self.frozen[-1]})
+        self.infos.append(info | {"frozen": self.frozen[-1]})
         return super().act(observation, info)
 
     def learn(self, transition: driftworld.Transition) -> None:
         super().learn(transition)
-        self.given.append(transition.info | {"frozen": False})
+        self.infos.append(transition.info | {"frozen": False})
 
 
 def curriculum(variants: list[str], seed: int, label: str) -> Curriculum:
@@ -40,7 +40,7 @@ def curriculum(variants: list[str], seed: int, label: str) -> Curriculum:
     return Curriculum.from_dict({"name": "permitted", "task_label": label, "blocks": blocks})
 
 
-def given(variants: list[str], seed: int, label: str, **options: Any) -> Listener:
+def run_listener(variants: list[str], seed: int, label: str, **options: Any) -> Listener:
     """Runs a listener through this curriculum."""
     listener = Listener()
     size = {**SMALL, "modalities": ["rgb"]} if label == "observation" else SMALL
@@ -49,40 +49,40 @@ def given(variants: list[str], seed: int, label: str, **options: Any) -> Listene
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_infos_depend_only_on_what_is_permitted(label: str) -> None:
-    draw = np.random.default_rng(LABELS.index(label))
+def test_infos_reveal_neither_variant_nor_world(label: str) -> None:
+    rng = np.random.default_rng(LABELS.index(label))
     names = np.array(["blue", "red", "green", "dusk", "wide", "penalty", "slow"])
-    heard = [given(draw.choice(names, 2, replace=False).tolist(), int(draw.integers(2**31)), label) for _ in range(4)]
+    listeners = [run_listener(rng.choice(names, 2, replace=False).tolist(), int(rng.integers(2**31)), label) for _ in range(4)]
     # The same keys and values, whatever the variants and worlds, in learning and evaluation.
-    assert all(one.given == heard[0].given for one in heard)
+    assert all(one.infos == listeners[0].infos for one in listeners)
     wanted = {"is_success", "ended_by", "frozen", *(["task_label"] if label == "info" else [])}
-    assert {key for info in heard[0].given for key in info} == wanted
-    assert {info["frozen"] for info in heard[0].given} == {False, True}
+    assert {key for info in listeners[0].infos for key in info} == wanted
+    assert {info["frozen"] for info in listeners[0].infos} == {False, True}
     # Borders between learning blocks are not revealed either.
-    assert heard[0].frozen == [False, True, False]
+    assert listeners[0].frozen == [False, True, False]
     if label == "none":
-        assert all(begun is None for one in heard for begun, _ in one.begun)
+        assert all(begun is None for one in listeners for begun, _ in one.begun)
 
 
 @pytest.mark.parametrize("label", LABELS)
 def test_full_infos_name_variant_and_world(label: str) -> None:
-    listener = given(["blue", "red"], 5, label, info="full")
-    resets = [info for info in listener.given if "variant_id" in info]
+    listener = run_listener(["blue", "red"], 5, label, info="full")
+    resets = [info for info in listener.infos if "variant_id" in info]
     assert all(key in info for info in resets for key in NAMES)
     plan = curriculum(["blue", "red"], 5, label)
-    lived = [(one.task, one.variant, one.seed, one.index) for block in plan for one in block]
-    told = [tuple(info[key] for key in ("task_id", "variant_id", "seed", "index")) for info in resets]
-    assert told[: len(lived) // 2] == lived[: len(lived) // 2]
+    planned = [(one.task, one.variant, one.seed, one.index) for block in plan for one in block]
+    reported = [tuple(info[key] for key in ("task_id", "variant_id", "seed", "index")) for info in resets]
+    assert reported[: len(planned) // 2] == planned[: len(planned) // 2]
 
 
 def test_no_seed_identifies_a_world() -> None:
-    listener = given(["blue", "red"], 5, "none")
+    listener = run_listener(["blue", "red"], 5, "none")
     plan = curriculum(["blue", "red"], 5, "none")
-    places = [(one.block, one.index) for block in plan for one in block]
-    places[8:8] = places[4:8]  # the evaluations are repeated
+    positions = [(one.block, one.index) for block in plan for one in block]
+    positions[8:8] = positions[4:8]  # the evaluations are repeated
     numbers: dict[int, set[tuple[int, int | None]]] = {}
-    for place, (_, number) in zip(places, listener.begun, strict=True):
-        numbers.setdefault(number, set()).add(place)
+    for position, (_, number) in zip(positions, listener.begun, strict=True):
+        numbers.setdefault(number, set()).add(position)
     assert all(len(found) == 1 for found in numbers.values())
 
 

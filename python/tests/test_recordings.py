@@ -1,6 +1,4 @@
-"""Recorded episodes: of curricula in one and in many environments, of custom loops, and resumed after an
-interruption.
-"""
+"""Recorded episodes replay: from curricula in one or many environments, from custom loops, and after an interruption."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ from driftworld import Curriculum, DriftworldEnv, DriftworldVectorEnv, LogWriter
 from small_lifetime import SMALL, Circler, Pupil, small
 
 
-def kept(log: Path) -> dict[str, str]:
+def recorded_lines(log: Path) -> dict[str, str]:
     return {str(path.relative_to(log)): path.read_text() for path in sorted(log.rglob("actions.jsonl"))}
 
 
@@ -26,13 +24,13 @@ class Wanderer:
     name = "wanderer"
 
     def __init__(self, num_envs: int) -> None:
-        self.chance = [np.random.default_rng(0)] * num_envs
+        self.rngs = [np.random.default_rng(0)] * num_envs
 
     def begin(self, env: int, label: str | None, seed: int) -> None:
-        self.chance[env] = np.random.default_rng(seed)
+        self.rngs[env] = np.random.default_rng(seed)
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
-        return np.stack([chance.uniform([0, -90, 0], [10, 90, 1]).astype(np.float32) for chance in self.chance])
+        return np.stack([rng.uniform([0, -90, 0], [10, 90, 1]).astype(np.float32) for rng in self.rngs])
 
     def learn(self, transition: Any) -> None: ...
 
@@ -40,7 +38,7 @@ class Wanderer:
 
 
 def check(log: Path) -> None:
-    """Replays every episode of a log: reading compares it with its row, and rendering runs it."""
+    """Replays every episode of a log: compares it with its row, and renders it."""
     rows = read_log(log)
     for number, reward, steps in zip(rows["exp_num"], rows["reward"], rows["episode_step_count"], strict=True):
         recording = Recording.read(log, int(number))
@@ -55,7 +53,7 @@ def test_recorded_lifetime_replays(tmp_path: Path) -> None:
     small().run(Pupil(), tmp_path / "log", record=True, **SMALL)
     plain, log = read_log(tmp_path / "plain"), read_log(tmp_path / "log")
     assert list(plain["reward"]) == list(log["reward"])
-    assert not kept(tmp_path / "plain")
+    assert not recorded_lines(tmp_path / "plain")
     check(tmp_path / "log")
 
 
@@ -63,7 +61,7 @@ def test_recorded_lifetime_replays(tmp_path: Path) -> None:
 def test_recorded_lifetime_in_many_environments_replays(tmp_path: Path, num_envs: int) -> None:
     small().run_vector(Wanderer(num_envs), tmp_path / "log", num_envs=num_envs, record=True, frame_skip=2, **SMALL)
     check(tmp_path / "log")
-    # The recording includes the overrides of the environment's options.
+    # The recorded world includes the environment's options.
     assert Recording.read(tmp_path / "log", 0).world()["agent_params"]["frame_skip"] == 2
 
 
@@ -72,13 +70,13 @@ def test_interrupted_recorded_lifetime_keeps_recording(tmp_path: Path) -> None:
     for stop in (1, 7, 12):
         log = tmp_path / f"stopped-{stop}"
         small().run(Pupil(), log, record=True, watch=lambda experience, _, stop=stop: experience.number < stop, **SMALL)
-        # As left by a process killed while writing, in the middle of a block.
+        # Simulates a process killed while writing, in the middle of a block.
         last = max(log.rglob("actions.jsonl"), key=lambda path: path.stat().st_mtime_ns)
         if last.read_text() != (tmp_path / "whole" / last.relative_to(log)).read_text():
             with last.open("a") as file:
                 file.write('{"experience":')
         small().run(Pupil(), log, **SMALL)
-        assert kept(log) == kept(tmp_path / "whole")
+        assert recorded_lines(log) == recorded_lines(tmp_path / "whole")
 
 
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
@@ -154,9 +152,9 @@ def test_episode_is_rendered_in_any_size_and_view(tmp_path: Path) -> None:
     assert recording.frames(size=24, view="above", every=3).shape == (5, 24, 24, 3)
     depth = recording.frames(size=24, modality="depth")
     assert (depth[..., 0] == depth[..., 1]).all()
-    for name, begin in (("e.gif", b"GIF89a"), ("e.apng", b"\x89PNG"), ("e.png", b"\x89PNG")):
+    for name, signature in (("e.gif", b"GIF89a"), ("e.apng", b"\x89PNG"), ("e.png", b"\x89PNG")):
         recording.save(tmp_path / name, size=24)
-        assert (tmp_path / name).read_bytes().startswith(begin)
+        assert (tmp_path / name).read_bytes().startswith(signature)
     sheets = {}
     for view, modality in (("agent", "rgb"), ("agent", "depth"), ("above", "rgb"), ("both", "rgb"), ("both", "depth")):
         recording.save(tmp_path / "e.png", size=24, view=view, modality=modality)
@@ -183,11 +181,11 @@ def test_missing_or_damaged_recording_is_reported(tmp_path: Path) -> None:
         replay(log, 999)
     first = next(iter(sorted(log.rglob("actions.jsonl"))))
     lines = first.read_text().splitlines(keepends=True)
-    said = json.loads(lines[2])
-    said["reward"] += 1.0
-    first.write_text("".join([*lines[:2], json.dumps(said) + "\n", *lines[3:]]))
+    episode = json.loads(lines[2])
+    episode["reward"] += 1.0
+    first.write_text("".join([*lines[:2], json.dumps(episode) + "\n", *lines[3:]]))
     with pytest.raises(driftworld.CurriculumError, match=r"actions\.jsonl: line 3: found"):
-        replay(log, said["experience"])
+        replay(log, episode["experience"])
     Curriculum.design("find_objects#red", learn=1, eval_episodes=1).run(Circler(), tmp_path / "none", max_steps=3, **SMALL)
     with pytest.raises(driftworld.DriftworldError, match="found no recording of episode 0"):
         replay(tmp_path / "none", 0)

@@ -1,4 +1,4 @@
-"""Refusals use Python's names, come before any large allocation, and raise the documented exceptions."""
+"""Invalid requests raise the documented exceptions, with Python's names, before any large allocation."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_too_large_batch_is_refused(num_envs: int, size: int) -> None:
 
 
 @pytest.mark.parametrize("sample", ["sample_many", "sample_many_json"])
-def test_too_large_worlds_are_refused(sample: str) -> None:
+def test_too_many_worlds_are_refused(sample: str) -> None:
     draw = getattr(driftworld.variant("scavenger_hunt"), sample)
     for count in (2**60, 2**64 - 1, 10_000_001):
         with pytest.raises(ValueError, match=f"count: found {count}, expected at most 10000000 worlds at once"):
@@ -124,16 +124,16 @@ except KeyboardInterrupt:
 
 def test_ctrl_c_ends_a_reset_between_environments() -> None:
     program = PROGRAM.format(call='envs.reset(options={"world": world})')
-    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=200, check=False)
-    assert (said.stdout, said.returncode) == ("interrupted True False\n", 0), said.stderr
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=200, check=False)
+    assert (process.stdout, process.returncode) == ("interrupted True False\n", 0), process.stderr
 
 
 def test_ctrl_c_ends_making_many_environments() -> None:
     call = 'soon(); driftworld.DriftworldVectorEnv(num_envs=4096, world=world, modalities="state", size=8)'
-    said = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", PROGRAM.format(call=call)], capture_output=True, text=True, timeout=200, check=False
     )
-    assert (said.stdout, said.returncode) == ("interrupted True True\n", 0), said.stderr
+    assert (process.stdout, process.returncode) == ("interrupted True True\n", 0), process.stderr
 
 
 # -- actions -----------------------------------------------------------------------------------------------------------
@@ -147,9 +147,9 @@ def test_action_of_an_ended_environment_is_ignored(row: int) -> None:
     other.reset(seed=0)
     ended = np.zeros(2, dtype=bool)
     for _ in range(9):
-        told = ours.step(np.where(ended, row, 1))
-        assert first_difference(told, other.step(np.array([1, 1]))) is None
-        ended = told[2] | told[3]
+        results = ours.step(np.where(ended, row, 1))
+        assert first_difference(results, other.step(np.array([1, 1]))) is None
+        ended = results[2] | results[3]
     with pytest.raises((ValueError, DriftworldError), match=f"action: found row {row}, expected 0 to 6"):
         ours.step(np.array([1, row]))
 
@@ -178,30 +178,30 @@ def test_row_beyond_64_bits_is_refused_in_vectors() -> None:
 def test_queue_looks_up_each_distinct_variant_once(monkeypatch: pytest.MonkeyPatch) -> None:
     from driftworld.envs.origin import Home
 
-    asked: list[Any] = []
+    looked_up: list[Any] = []
     find = Home.variant
-    monkeypatch.setattr(Home, "variant", lambda self, name, option: (asked.append(name), find(self, name, option))[1])
+    monkeypatch.setattr(Home, "variant", lambda self, name, option: (looked_up.append(name), find(self, name, option))[1])
     queue = ["red", "blue", "find_objects#dusk", driftworld.variant("find_objects#near")] * 25_000
     envs = native(3)
     envs.reset(seed=0, options={"queue": queue})
-    assert asked == queue[:4]
+    assert looked_up == queue[:4]
 
 
 @pytest.mark.parametrize("num_envs", [1, 2, 3, 4])
 @pytest.mark.parametrize("length", [1, 2, 3, 4, 6])
-def test_queue_is_dealt_out_repeatedly(num_envs: int, length: int) -> None:
+def test_queue_is_distributed_repeatedly(num_envs: int, length: int) -> None:
     names = ["red", "blue", "red", "dusk", "near", "blue"][:length]
     envs = native(num_envs, autoreset_mode="disabled", info="full")
-    told = [envs.reset(seed=0, options={"queue": np.array(names)})[1]["variant_id"]]
-    told += [envs.reset()[1]["variant_id"] for _ in range(2 * length)]
-    dealt = [name for each in told for name in each]
-    assert dealt == [f"find_objects#{names[turn % length]}" for turn in range(len(dealt))]
+    ids = [envs.reset(seed=0, options={"queue": np.array(names)})[1]["variant_id"]]
+    ids += [envs.reset()[1]["variant_id"] for _ in range(2 * length)]
+    distributed = [name for each in ids for name in each]
+    assert distributed == [f"find_objects#{names[turn % length]}" for turn in range(len(distributed))]
 
 
-# -- words -------------------------------------------------------------------------------------------------------------
+# -- values ------------------------------------------------------------------------------------------------------------
 
 
-def lived(folder: Path) -> Path:
+def write_log(folder: Path) -> Path:
     with driftworld.LogWriter(folder) as log:
         for number in range(30):
             kind: Any = "test" if number // 10 % 2 else "train"
@@ -239,9 +239,9 @@ WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
 
 @pytest.mark.parametrize("name", WRONG)
 def test_invalid_values_are_refused_with_pythons_names(name: str, tmp_path: Path) -> None:
-    call, told = WRONG[name]
-    with pytest.raises((ValueError, DriftworldError), match=re.escape(told)) as refused:
-        call(lived(tmp_path / "log"))
+    call, message = WRONG[name]
+    with pytest.raises((ValueError, DriftworldError), match=re.escape(message)) as refused:
+        call(write_log(tmp_path / "log"))
     text = str(refused.value).replace(str(tmp_path), "")
     assert "expected" in text or "choose" in text
     for word in ("::", "--", "<", "invalid ", "borrowed", "digit", "literal", "target type", "possible values"):
@@ -294,8 +294,8 @@ def test_help_shows_every_default(name: str, value: Any) -> None:
     assert [parameter.name for parameter in parameters if parameter.default is ...] == []
 
 
-def closed(value: Any, parameter: str) -> set[Any]:
-    """The words listed in a parameter's type."""
+def literal_words(value: Any, parameter: str) -> set[Any]:
+    """The words in the `Literal` types of a parameter."""
     pending, words = [typing.get_type_hints(value)[parameter]], set()
     while pending:
         kind = pending.pop()
@@ -306,8 +306,8 @@ def closed(value: Any, parameter: str) -> set[Any]:
     return words
 
 
-def known(call: Callable[[str], Any]) -> set[str]:
-    """The expected words in the error of a call."""
+def accepted_words(call: Callable[[str], Any]) -> set[str]:
+    """The words that the error of a call lists as expected."""
     with pytest.raises((ValueError, DriftworldError)) as refused:
         call("no such word")
     text = str(refused.value).partition("expected ")[2].removeprefix("one of ")
@@ -316,7 +316,7 @@ def known(call: Callable[[str], Any]) -> set[str]:
 
 
 ENVS = (driftworld.DriftworldEnv.__init__, driftworld.DriftworldVectorEnv.__init__)
-CLOSED: dict[str, tuple[Any, Callable[[str], Any]]] = {
+LITERALS: dict[str, tuple[Any, Callable[[str], Any]]] = {
     **{
         f"{name} of {made.__qualname__}": (
             (made, name),
@@ -351,12 +351,12 @@ CLOSED: dict[str, tuple[Any, Callable[[str], Any]]] = {
 }
 
 
-@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize("name", LITERALS)
 def test_literal_types_list_the_accepted_words(name: str) -> None:
-    (value, parameter), call = CLOSED[name]
-    # Experts have their own method. A letter may stand for the name of an element.
-    letters = {word for word in known(call) if len(word) == 1 or word.startswith("or the letter")}
-    assert closed(value, parameter) == known(call) - {"expert"} - letters
+    (value, parameter), call = LITERALS[name]
+    # `expert` is for experts only, and a letter may stand for the name of an element.
+    letters = {word for word in accepted_words(call) if len(word) == 1 or word.startswith("or the letter")}
+    assert literal_words(value, parameter) == accepted_words(call) - {"expert"} - letters
 
 
 def test_order_methods_match_the_library() -> None:

@@ -1,4 +1,4 @@
-"""Every option of an operation is a field of its request: signatures, docstrings and pages follow from the fields."""
+"""Signatures and docstrings of operations have all fields of their requests, with the same defaults."""
 
 from __future__ import annotations
 
@@ -37,36 +37,36 @@ OFFERED: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {
         },
     ),
 }
-#: Arguments that are no fields: what the function itself does with the result.
-OWN = {"design": {"plot"}, "report": {"path"}}
+#: Arguments that are not fields, because the function itself uses them.
+NOT_FIELDS = {"design": {"plot"}, "report": {"path"}}
 
 
-def differences(fields: list[tuple[str, str | None]], function: Callable[..., Any], apart: set[str]) -> list[str]:
-    """What differs between a request's fields and a function: names, defaults, and defaults in the docstring."""
-    told = []
+def differences(fields: list[tuple[str, str | None]], function: Callable[..., Any], allowed: set[str]) -> list[str]:
+    """The differences between a request's fields and a function, in names, defaults, and defaults in the docstring."""
+    found = []
     parameters, docstring = inspect.signature(function).parameters, inspect.getdoc(function) or ""
-    for name in {name for name, _ in fields} ^ set(parameters) ^ apart:
-        told.append(f"{name}: found in {'the signature' if name in parameters else 'the request'} alone")
+    for name in {name for name, _ in fields} ^ set(parameters) ^ allowed:
+        found.append(f"{name}: found in {'the signature' if name in parameters else 'the request'} alone")
     for name, default in fields:
         if name not in parameters:
             continue
         entry = re.search(rf"^    (?:\w+, )*{name}(?:, \w+)*: (.*(?:\n {{8}}.*)*)", docstring, re.MULTILINE)
         if entry is None:
-            told.append(f"{name}: found no entry in the docstring")
+            found.append(f"{name}: found no entry in the docstring")
         elif default not in (None, "0", "none", "false"):
             value = parameters[name].default
             number = f"{int(default):,}" if default.isdigit() else default
             if value is None and not re.search(rf"{re.escape(number)}\b.*default|default\W+{re.escape(number)}", entry[1]):
-                told.append(f"{name}: found no default {number} in the docstring")
+                found.append(f"{name}: found no default {number} in the docstring")
             elif value is not None and str(value) != default:
-                told.append(f"{name}: found the default {value}, expected {default}")
-    return sorted(told)
+                found.append(f"{name}: found the default {value}, expected {default}")
+    return sorted(found)
 
 
 @pytest.mark.parametrize("operation", OFFERED)
 def test_signature_has_the_requests_fields(operation: str) -> None:
     function, withheld = OFFERED[operation]
-    assert differences(_native.requests()[operation], function, set(withheld) | OWN.get(operation, set())) == []
+    assert differences(_native.requests()[operation], function, set(withheld) | NOT_FIELDS.get(operation, set())) == []
 
 
 def test_every_request_is_compared() -> None:
@@ -84,5 +84,5 @@ def test_added_field_is_missed_in_signature_and_docstring() -> None:
             known: A number.
         """
 
-    told = ["added: found no entry in the docstring", "known: found the default 2, expected 3"]
-    assert differences([("known", "3"), ("added", None)], forgetful, set()) == told
+    found = ["added: found no entry in the docstring", "known: found the default 2, expected 3"]
+    assert differences([("known", "3"), ("added", None)], forgetful, set()) == found

@@ -1,4 +1,4 @@
-"""The committed results still match: their variants and worlds have the recorded hashes."""
+"""The variants and worlds of committed results still have the recorded hashes."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ CONFIGS = sorted((ROOT / "examples" / "python" / "results").glob("*/config.json"
 def test_recorded_hashes_are_current(config: Path) -> None:
     worlds = json.loads(config.read_text(encoding="utf-8"))["worlds"]
     assert worlds
-    for name, told in worlds.items():
+    for name, recorded in worlds.items():
         path = f"{ROOT / name}" if ".json" in name else name
-        assert driftworld.variant(path).hash == told["variant"], f"{name}: made anew, or deleted"
+        assert driftworld.variant(path).hash == recorded["variant"], f"{name}: record the result again, or delete it"
         env = gym.make("driftworld/Task-v0", task=path)
-        found = {seed: env.reset(seed=int(seed))[1]["world_hash"] for seed in told["first_worlds"]}
-        assert found == told["first_worlds"], f"{name}: made anew, or deleted"
+        found = {seed: env.reset(seed=int(seed))[1]["world_hash"] for seed in recorded["first_worlds"]}
+        assert found == recorded["first_worlds"], f"{name}: record the result again, or delete it"

@@ -1,4 +1,4 @@
-"""The caller's rounding mode, which other libraries may change, has no effect and stays unchanged."""
+"""The caller's rounding mode, which other libraries may change, affects no result and is left unchanged."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def rounding(mode: int) -> Any:
     try:
         assert maths.fegetround() == mode
         yield
-        assert maths.fegetround() == mode, "what the caller set was not put back"
+        assert maths.fegetround() == mode, "the caller's rounding mode was not restored"
     finally:
         maths.fesetround(before)
 
 
-#: Inputs are made beforehand: NumPy and Python's JSON follow the thread's rounding mode.
+#: Inputs are created in the usual mode, because NumPy and Python's JSON follow the thread's rounding mode.
 ACTION = np.array([0.7, 0.31, 0.0], dtype=np.float32)
 DOCUMENT = json.loads((ROOT / "examples" / "tasks" / "get_to_goal.json").read_text(encoding="utf-8"))
 
 
-def lived(num_envs: int, num_threads: int) -> Any:
+def run_envs(num_envs: int, num_threads: int) -> Any:
     envs = gym.make_vec(
         "driftworld/FindObjects-v0",
         num_envs,
@@ -66,9 +66,9 @@ def fresh_task() -> Any:
 
 WORK: dict[str, Callable[[], Any]] = {
     "worlds": fresh_task,
-    "one environment": lambda: lived(1, 1),
-    "several threads": lambda: lived(4, 2),
-    "many environments": lambda: lived(33, 2),
+    "one environment": lambda: run_envs(1, 1),
+    "several threads": lambda: run_envs(4, 2),
+    "many environments": lambda: run_envs(33, 2),
     "distances": lambda: [
         float(driftworld.distance("find_objects#blue", "find_objects#dusk", by=by, worlds=worlds))
         for by, worlds in (("parameters", None), ("worlds", 2), ("pictures", 1), ("dynamics", 1), ("behavior", 1))
@@ -82,8 +82,8 @@ WORK: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("name", WORK)
 def test_numbers_do_not_depend_on_the_callers_rounding(name: str) -> None:
-    usual = WORK[name]()
+    expected = WORK[name]()
     for mode in MODES:
         with rounding(mode):
             found = WORK[name]()
-        assert first_difference(usual, found) is None, hex(mode)
+        assert first_difference(expected, found) is None, hex(mode)

@@ -1,4 +1,4 @@
-"""Scores and report pages in Python match the command's."""
+"""Scores and report pages in Python match those of the command."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def three_logs(tmp_path: Path) -> list[Path]:
     return [lifetime(tmp_path / name, better) for name, better in (("one", 1.0), ("two", 2.0), ("three", 2.5))]
 
 
-def commanded(*argv: str | Path) -> Any:
+def command_output(*argv: str | Path) -> Any:
     command = [sys.executable, "-m", "driftworld", *map(str, argv), "--json"]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
 def test_scores_of_one_lifetime_match_the_command(logs: list[Path]) -> None:
-    found, expected = metrics(logs[0]), commanded("metrics", logs[0])
+    found, expected = metrics(logs[0]), command_output("metrics", logs[0])
     assert found.lifetimes == [expected]
     assert found["avg_train_perf"] == expected["avg_train_perf"] == found.lifetime["avg_train_perf"]
     assert found.tasks == expected["task_metrics"] and set(found.tasks) == set(TASKS)
@@ -69,25 +69,25 @@ def test_scores_of_one_lifetime_match_the_command(logs: list[Path]) -> None:
 
 def test_notebook_shows_the_rows_of_the_commands_table(logs: list[Path]) -> None:
     found = metrics(logs[0])
-    assert found.readings == commanded("metrics", logs[0])["readings"]
+    assert found.readings == command_output("metrics", logs[0])["readings"]
     command = [sys.executable, "-m", "driftworld", "metrics", str(logs[0])]
     wide = {**os.environ, "COLUMNS": "400"}
     text = subprocess.run(command, check=True, capture_output=True, text=True, env=wide).stdout
-    told = found._repr_html_()
+    page = found._repr_html_()
     assert "forward_transfer_contrast" in found.readings and "forward_transfer_contrast" not in found.lifetime
     for name, row in found.readings.items():
         [line] = [line for line in text.splitlines() if line.startswith(f"{name} ")]
-        [cells] = [part for part in told.split("<tr>") if f">{name}<" in part]
+        [cells] = [part for part in page.split("<tr>") if f">{name}<" in part]
         assert row["explanation"] in line and row["explanation"] in cells
         if row["word"] is not None:
             assert f"  {row['word']}  " in line and f">{row['word']}<" in cells
         if row["null_band"] is not None:
             assert "\N{PLUS-MINUS SIGN}" in cells and f">{row['null_band']['p']:.3f}<" in cells
     for text in found.lifetimes[0].get("cautions", []):
-        assert html.escape(text) in told
+        assert html.escape(text) in page
     several = metrics(logs)
-    told = several._repr_html_()
-    assert all(f">{row['name']}<" in told and (row["word"] or "") in told for row in several.repeats)
+    page = several._repr_html_()
+    assert all(f">{row['name']}<" in page and (row["word"] or "") in page for row in several.repeats)
     assert {row["name"] for row in several.repeats} >= {"backward_transfer_contrast"}
 
 
@@ -98,7 +98,7 @@ def test_scales_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> 
     file.write_text(json.dumps({"scales": scales}), encoding="utf-8")
     found = metrics(logs[0], scales=scales)
     assert found == metrics(logs[0], scales=file)
-    assert found.lifetimes == [commanded("metrics", logs[0], "--scales", file)]
+    assert found.lifetimes == [command_output("metrics", logs[0], "--scales", file)]
     assert found.reached[task]["scaled_by"] == "anchors" and found.reached[other]["scaled_by"] == "own"
     for cell in found.reached[task]["evaluations"]:
         assert cell["score"] == pytest.approx((cell["mean"] + 5.0) / 50.0)
@@ -110,7 +110,7 @@ def test_scales_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> 
 
 def test_power_matches_the_command(logs: list[Path]) -> None:
     found = metrics(logs, power=10.0)
-    assert found.power == commanded("metrics", *logs, "--power", "10")["power"]
+    assert found.power == command_output("metrics", *logs, "--power", "10")["power"]
     # Without differences between lifetimes it cannot be computed.
     powers = [row["power"] for row in found.power if row["power"] is not None]
     assert powers and all(0 <= power <= 1 for power in powers)
@@ -136,14 +136,14 @@ def test_options_have_the_commands_effects(logs: list[Path], tmp_path: Path) -> 
         noise_seed=3,
     )
     flags = ["-t", "both", "-m", "both", "-g", "none", "-x", "-N", "0.0", "0.5", "--noise-seed", "3"]
-    expected = commanded("metrics", logs[0], "--ste", *experts, *flags, "-d", ranges)
+    expected = command_output("metrics", logs[0], "--ste", *experts, *flags, "-d", ranges)
     assert found.lifetimes == [expected]
     assert found["ste_rel_perf"] is not None and "forward_transfer_contrast" in found.lifetime
     assert found.lifetimes != metrics(logs[0]).lifetimes
 
 
 def test_intervals_of_several_lifetimes_match_the_command(logs: list[Path]) -> None:
-    found, expected = metrics(logs, bootstrap_seed=5), commanded("metrics", *logs, "--bootstrap-seed", "5")
+    found, expected = metrics(logs, bootstrap_seed=5), command_output("metrics", *logs, "--bootstrap-seed", "5")
     assert found.repeats == expected["repeats"] and found.lifetimes == expected["lifetimes"]
     assert found.intervals == expected["intervals"]
     values = found["avg_eval_perf"]
@@ -208,8 +208,8 @@ def test_page_matches_the_command(logs: list[Path], tmp_path: Path) -> None:
     command = [sys.executable, "-m", "driftworld", "report", *map(str, logs), "-o", str(other), "--title", "Mine"]
     subprocess.run([*command, "-T", "raw", "timeline", "--unit", "exp_num"], check=True, capture_output=True)
     # The command's page also shows the command.
-    told = re.sub('<tr><th scope="row">command</th>.*?</tr>', "", other.read_text(encoding="utf-8"))
-    assert told == page
+    without_command = re.sub('<tr><th scope="row">command</th>.*?</tr>', "", other.read_text(encoding="utf-8"))
+    assert without_command == page
     with pytest.raises(MetricsError):
         report(tmp_path / "nowhere")
 

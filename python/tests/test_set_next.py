@@ -16,7 +16,7 @@ OPTIONS: dict[str, Any] = {"size": 8, "modalities": ["rgb", "state"], "actions":
 VARIANTS = ["red", "blue", "dusk", "near"]
 
 
-def many(num_envs: int, mode: str, **options: Any) -> Any:
+def make_envs(num_envs: int, mode: str, **options: Any) -> Any:
     return gym.make_vec(
         FIND,
         num_envs,
@@ -27,38 +27,38 @@ def many(num_envs: int, mode: str, **options: Any) -> Any:
     ).unwrapped
 
 
-def drawn(chance: np.random.Generator) -> dict[str, Any]:
-    """A random request for one environment."""
-    match chance.integers(4):
+def random_arguments(rng: np.random.Generator) -> dict[str, Any]:
+    """Random arguments of `set_next` for one environment."""
+    match rng.integers(4):
         case 0:
-            return {"variant": str(chance.choice(VARIANTS))}
+            return {"variant": str(rng.choice(VARIANTS))}
         case 1:
-            return {"index": int(chance.integers(100))}
+            return {"index": int(rng.integers(100))}
         case 2:
-            return {"queue": [str(name) for name in chance.choice(VARIANTS, 3)]}
+            return {"queue": [str(name) for name in rng.choice(VARIANTS, 3)]}
         case _:
-            seed = int(chance.integers(100))
-            return {"world": driftworld.variant("find_objects#red").sample(seed), "variant": str(chance.choice(VARIANTS))}
+            seed = int(rng.integers(100))
+            return {"world": driftworld.variant("find_objects#red").sample(seed), "variant": str(rng.choice(VARIANTS))}
 
 
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
 @pytest.mark.parametrize("seed", range(3))
 def test_set_next_in_a_vector_environment_equals_single_environments(mode: str, seed: int) -> None:
-    chance = np.random.default_rng(seed)
-    envs = many(3, mode)
+    rng = np.random.default_rng(seed)
+    envs = make_envs(3, mode)
     alone = [gym.make(FIND, max_episode_steps=4, **OPTIONS) for _ in range(3)]
     envs.reset(seed=seed)
     for env, own in zip(alone, driftworld.spread_seeds(seed, 3)):
         env.reset(seed=own)
     ended = [False] * 3
     for _ in range(40):
-        env = int(chance.integers(3))
-        asked = drawn(chance)
-        queue = asked.pop("queue", None)
+        env = int(rng.integers(3))
+        arguments = random_arguments(rng)
+        queue = arguments.pop("queue", None)
         mask = np.arange(3) == env
-        envs.set_next(**{name: [value] for name, value in asked.items()}, queue=queue, mask=mask)
-        alone[env].unwrapped.set_next(**asked, queue=queue)  # type: ignore[attr-defined]
-        actions = chance.integers(0, envs.single_action_space.n, 3)
+        envs.set_next(**{name: [value] for name, value in arguments.items()}, queue=queue, mask=mask)
+        alone[env].unwrapped.set_next(**arguments, queue=queue)  # type: ignore[attr-defined]
+        actions = rng.integers(0, envs.single_action_space.n, 3)
         observations, rewards, terminated, truncated, _ = envs.step(actions)
         for env, (one, action) in enumerate(zip(alone, actions)):
             if mode == "next_step" and ended[env]:
@@ -75,7 +75,7 @@ def test_set_next_in_a_vector_environment_equals_single_environments(mode: str, 
 
 
 def test_current_episodes_continue_and_requests_persist() -> None:
-    envs, plain = many(4, "same_step"), many(4, "same_step")
+    envs, plain = make_envs(4, "same_step"), make_envs(4, "same_step")
     envs.reset(seed=1)
     plain.reset(seed=1)
     envs.set_next(variant=["dusk", None, "blue"], mask=np.array([True, True, True, False]))
@@ -95,7 +95,7 @@ def test_current_episodes_continue_and_requests_persist() -> None:
 
 
 @pytest.mark.parametrize(
-    "asked",
+    "arguments",
     [
         {"variant": "rde"},
         {"variant": ["red", "rde"]},
@@ -110,11 +110,11 @@ def test_current_episodes_continue_and_requests_persist() -> None:
     ],
     ids=str,
 )
-def test_invalid_requests_change_nothing(asked: dict[str, Any]) -> None:
-    envs = many(2, "same_step")
+def test_invalid_requests_change_nothing(arguments: dict[str, Any]) -> None:
+    envs = make_envs(2, "same_step")
     envs.reset(seed=5)
     with pytest.raises((ValueError, TypeError, Error, driftworld.TaskError)):
-        envs.set_next(**asked)
+        envs.set_next(**arguments)
     envs.reset()
     assert [envs.origin(env)["variant_id"] for env in range(2)] == ["find_objects#default"] * 2
     assert [envs.origin(env)["index"] for env in range(2)] == [1, 1]
@@ -126,7 +126,7 @@ def test_labels_include_the_initial_variants() -> None:
     options: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "discrete", "interact": False}
     others = [task.variant("plain"), task.variant("soft"), None, task.variant("plain")]
     for modalities, label in (("rgb", "observation"), ("rgb", "info"), (["rgb"], "observation")):
-        envs = many(4, "same_step", variants=others, **{**options, "modalities": modalities, "task_label": label})
+        envs = make_envs(4, "same_step", variants=others, **{**options, "modalities": modalities, "task_label": label})
         observations, infos = envs.reset(seed=0)
         # The labels of initial variants from elsewhere follow the task's own.
         expected = [len(own) + 1, len(own) + 2, len(own), len(own) + 1]
@@ -143,22 +143,22 @@ def test_removed_word_is_refused_with_its_replacement() -> None:
 
 
 def test_with_a_mask_each_environment_gets_its_own_queue() -> None:
-    envs, alone = many(4, "next_step"), gym.make(FIND, max_episode_steps=4, **OPTIONS)
+    envs, alone = make_envs(4, "next_step"), gym.make(FIND, max_episode_steps=4, **OPTIONS)
     envs.reset(seed=0)
     queue = ["red", "dusk", "near"]
     envs.reset(options={"queue": queue, "reset_mask": np.arange(4) >= 2})
     for _ in range(6):
-        _, told = alone.reset(options={"queue": queue} if _ == 0 else None)
-        assert [envs.origin(env)["variant_id"] for env in (2, 3)] == [told["variant_id"]] * 2
+        _, info = alone.reset(options={"queue": queue} if _ == 0 else None)
+        assert [envs.origin(env)["variant_id"] for env in (2, 3)] == [info["variant_id"]] * 2
         for _ in range(5):
             envs.step(np.zeros(4, dtype=np.int64))
 
 
 def test_first_observation_of_one_environment_has_its_label() -> None:
-    envs = many(2, "next_step", variant="near", task_label="observation")
+    envs = make_envs(2, "next_step", variant="near", task_label="observation")
     envs.reset(seed=0)
-    first, told = envs.reset_one(1, options={"variant": "red"})
-    assert first["task"].argmax() == envs._members.label_number(1) and told["variant_id"] == "find_objects#red"
+    first, info = envs.reset_one(1, options={"variant": "red"})
+    assert first["task"].argmax() == envs._members.label_number(1) and info["variant_id"] == "find_objects#red"
 
 
 @pytest.mark.learners
@@ -172,15 +172,15 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
     model = PPO("MlpPolicy", envs, n_steps=16, batch_size=16, n_epochs=1, seed=0, device="cpu")
     model.learn(32)
     envs.set_options([{"variant": "red"}, {"variant": "blue"}])
-    begun: list[list[str]] = [[], []]
+    started: list[list[str]] = [[], []]
 
-    def note(told: dict[str, Any], _: Any) -> bool:
-        for env in np.flatnonzero(told["dones"]):
-            begun[env].append(envs.unwrapped.reset_infos[env]["variant_id"])
+    def note(variables: dict[str, Any], _: Any) -> bool:
+        for env in np.flatnonzero(variables["dones"]):
+            started[env].append(envs.unwrapped.reset_infos[env]["variant_id"])
         return True
 
-    model.learn(128, reset_num_timesteps=False, callback=lambda told, more: note(told, more))
-    assert [set(names) for names in begun] == [{"find_objects#red"}, {"find_objects#blue"}]
+    model.learn(128, reset_num_timesteps=False, callback=lambda variables, options: note(variables, options))
+    assert [set(names) for names in started] == [{"find_objects#red"}, {"find_objects#blue"}]
     with pytest.raises(ValueError, match="set_options: found 'varaint'"):
         envs.set_options({"varaint": "red"})
     # One invalid request among several changes nothing, and is not applied again.
@@ -206,19 +206,19 @@ def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
     envs.reset()
     actions = np.zeros(2, dtype=np.int64)
 
-    def begun() -> list[tuple[str, int]]:
+    def started() -> list[tuple[str, int]]:
         return [(info["variant_id"].partition("#")[2], info["index"]) for info in envs.unwrapped.reset_infos]
 
-    assert begun() == [("default", 0)] * 2
+    assert started() == [("default", 0)] * 2
     envs.set_options({"variant": "dusk", "index": 7})
-    assert envs.step(actions)[2].all() and begun() == [("dusk", 7)] * 2
+    assert envs.step(actions)[2].all() and started() == [("dusk", 7)] * 2
     # A variant persists until replaced; an index applies to one episode.
-    assert envs.step(actions)[2].all() and begun() == [("dusk", 8)] * 2
+    assert envs.step(actions)[2].all() and started() == [("dusk", 8)] * 2
     envs.set_options([{"variant": "red"}, {}])
-    assert envs.step(actions)[2].all() and begun() == [("red", 9), ("dusk", 9)]
+    assert envs.step(actions)[2].all() and started() == [("red", 9), ("dusk", 9)]
     envs.set_options({"variant": "near"})
     envs.reset()
-    assert [variant for variant, _ in begun()] == ["near"] * 2
+    assert [variant for variant, _ in started()] == ["near"] * 2
 
 
 @pytest.mark.learners
@@ -242,6 +242,6 @@ def test_rllib_runner_continues_with_another_variant() -> None:
     runner.sample(num_timesteps=4, random_actions=True, force_reset=True)
     runner.env.unwrapped.set_next(variant=["red", "blue"])
     episodes = runner.sample(num_timesteps=40, random_actions=True)
-    begun = [episode.get_infos(0)["variant_id"] for episode in episodes if episode.t_started == 0 and len(episode) == 4]
-    assert set(begun) == {"find_objects#red", "find_objects#blue"}
+    started = [episode.get_infos(0)["variant_id"] for episode in episodes if episode.t_started == 0 and len(episode) == 4]
+    assert set(started) == {"find_objects#red", "find_objects#blue"}
     runner.stop()

@@ -1,4 +1,4 @@
-"""Contents of observations and forms of actions follow the task, even if its variants differ in them."""
+"""Observations and actions have the forms that the task defines, even if its variants differ in them."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def _task(**agent: Any) -> dict[str, Any]:
     """A task whose parameter selects the modalities, with a variant for each choice."""
     choices = [["rgb"], ["depth"], ["class", "rgb"], ["instance", "segmentation"], []]
     shown = {"role": "variant", "type": "json", "affects": ["O"], "choices": choices, "default": ["rgb"]}
-    may = {"role": "variant", "type": "boolean", "affects": ["A"], "choices": [True, False], "default": True}
+    may_interact = {"role": "variant", "type": "boolean", "affects": ["A"], "choices": [True, False], "default": True}
     return {
         "name": "shows",
-        "parameters": {"shown": shown, "may": may},
+        "parameters": {"shown": shown, "may": may_interact},
         "world": {
             "max_steps": 3,
             "environment_params": {"map_size": [20, 20]},
@@ -62,9 +62,9 @@ def test_batch_has_all_variants_modalities_and_each_fills_its_own(task: str) -> 
     assert set(envs.single_observation_space.spaces) == {*ALL, "state"}  # type: ignore[attr-defined]
     (found, _), (full, _) = envs.reset(seed=1), everything.reset(seed=1)
     for _ in range(8):
-        for env, asked in enumerate(own):
+        for env, modalities in enumerate(own):
             for kind in ALL:
-                expected = full[kind][env] if kind in asked else np.zeros_like(full[kind][env])
+                expected = full[kind][env] if kind in modalities else np.zeros_like(full[kind][env])
                 np.testing.assert_array_equal(found[kind][env], expected)
         actions = np.tile([1.0, 0.3, 0.0], (5, 1))
         found, full = envs.step(actions)[0], everything.step(actions)[0]
@@ -73,9 +73,9 @@ def test_batch_has_all_variants_modalities_and_each_fills_its_own(task: str) -> 
 
 def test_blank_gives_all_variants_one_space(task: str) -> None:
     env = DriftworldEnv(task, modalities=["rgb", "depth", "class", "instance", "segmentation"], blank=True)
-    for name, asked in [("v0", {"rgb"}), ("v1", {"depth"}), ("v2", {"class", "rgb"}), ("v4", set[str]())]:
+    for name, modalities in [("v0", {"rgb"}), ("v1", {"depth"}), ("v2", {"class", "rgb"}), ("v4", set[str]())]:
         observation, _ = env.reset(seed=2, options={"variant": name})
-        assert {kind for kind, image in observation.items() if image.any()} == asked
+        assert {kind for kind, image in observation.items() if image.any()} == modalities
         assert env.observation_space.contains(observation)
 
 
@@ -101,8 +101,8 @@ def test_actions_are_the_tasks_rows_or_numbers_of_one_width(task: str, tmp_path:
     env = DriftworldEnv(task)
     env.reset(seed=0, options={"variant": "no_hand"})
     env.step(np.array([1.0, 0.0, 1.0], dtype=np.float32))
-    both = DriftworldVectorEnv(task, num_envs=2, variants=["no_hand", "v0"])
-    assert both.single_action_space.shape == (3,)
+    envs = DriftworldVectorEnv(task, num_envs=2, variants=["no_hand", "v0"])
+    assert envs.single_action_space.shape == (3,)
     table = tmp_path / "rows.json"
     table.write_text(json.dumps(_task(actions={"discrete": [[1, 0, 0], [0, 90, 0]]})))
     assert DriftworldEnv(str(table)).action_space == gymnasium.spaces.Discrete(2)
@@ -197,7 +197,7 @@ def test_state_features_do_not_matter_without_the_state() -> None:
 def test_instruction_is_last_in_the_state_and_matches_the_drawn_values() -> None:
     env = DriftworldEnv("fetch#four", modalities=["rgb", "state"], size=16)
     colors = {"red": (1, 0, 0), "blue": (0, 0, 1), "gold": (1, 215 / 255, 0), "limegreen": (50 / 255, 205 / 255, 50 / 255)}
-    told = set()
+    instructions = set()
     for seed in range(12):
         observation, _ = env.reset(seed=seed)
         instruction = observation["state"][-4:]
@@ -205,7 +205,7 @@ def test_instruction_is_last_in_the_state_and_matches_the_drawn_values() -> None
         assert env.observation_space.contains(observation)
         pays = next(each for each in env.unwrapped.state()["objects"] if each.get("reward", 0) > 0)
         assert tuple(pays["color"]) == list(colors.values())[int(instruction.argmax())]
-        told.add(int(instruction.argmax()))
-    assert len(told) > 1
+        instructions.add(int(instruction.argmax()))
+    assert len(instructions) > 1
     with pytest.raises(ValueError, match="found instruction_len 0, expected 4"):
         env.reset(options={"variant": TaskSpec.load("thin_ice").variant("lake")})

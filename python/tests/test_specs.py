@@ -1,4 +1,4 @@
-"""Task specs, variants, drifts and documents from Python."""
+"""Tests task specs, variants, drifts and documents in Python."""
 
 from __future__ import annotations
 
@@ -79,13 +79,13 @@ def test_variant_has_its_values(lamps: TaskSpec) -> None:
 
 
 def test_notebooks_show_the_changes_of_variants(lamps: TaskSpec) -> None:
-    told = lamps.variant("dusk")._repr_html_()
-    assert ">lamps#dusk<" in told and "<td style=\"text-align: left\">light</td>" in told
-    assert ">0.5<" in told and ">2<" in told and "at their defaults: far 5" in told
-    assert lamps.variant("day")._repr_html_().count("<tr>") == 1, "the head alone"
-    told = lamps._repr_html_()
-    assert told.count("<tr>") == 1 + len(lamps.variants)
-    assert ">light 0.5<" in told and ">the defaults<" in told and "lamps: Light and dark." in told
+    html = lamps.variant("dusk")._repr_html_()
+    assert ">lamps#dusk<" in html and "<td style=\"text-align: left\">light</td>" in html
+    assert ">0.5<" in html and ">2<" in html and "at their defaults: far 5" in html
+    assert lamps.variant("day")._repr_html_().count("<tr>") == 1, "only the header row"
+    html = lamps._repr_html_()
+    assert html.count("<tr>") == 1 + len(lamps.variants)
+    assert ">light 0.5<" in html and ">the defaults<" in html and "lamps: Light and dark." in html
     named = TaskSpec.from_dict({**LAMPS, "description": "<b>"})
     assert "&lt;b&gt;" in named._repr_html_()
 
@@ -293,7 +293,7 @@ def test_suspicious_document_causes_warnings() -> None:
         assert validate({"environment_params": {}, "oddity": 1}, kind="l2explorer-world") == []
 
 
-LAWS = {
+DISTRIBUTIONS = {
     "color_uniform": {"from": [0.0, 0.5, 0.0], "to": [1.0, 1.0, 0.25]},
     "color_normal": {"mean": {"param": "leaf"}, "std": {"param": "loose"}},
     "color_perturb": {"value": [0.0, 0.5, 0.5], "noise": 0.2, "channels": "together"},
@@ -301,9 +301,9 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("family", LAWS)
+@pytest.mark.parametrize("family", DISTRIBUTIONS)
 def test_colour_distributions_round_trip(family: str) -> None:
-    law = {family: LAWS[family]}
+    distribution = {family: DISTRIBUTIONS[family]}
     document = {
         "version": 2,
         "name": "sky",
@@ -316,14 +316,14 @@ def test_colour_distributions_round_trip(family: str) -> None:
                 "default": [0, 0.5, 0],
             },
             "loose": {"role": "variant", "type": "number", "affects": ["O"], "range": [0, 1], "default": 0.1},
-            "sky": {"role": "randomized", "type": "color", "affects": ["O"], "distribution": law},
+            "sky": {"role": "randomized", "type": "color", "affects": ["O"], "distribution": distribution},
         },
         "world": {"environment_params": {"sky_color": {"param": "sky"}}},
         "variants": {"autumn": {"leaf": [1, 0.5, 0], "loose": 0}},
     }
     task = TaskSpec.from_dict(document)
     again = TaskSpec.from_dict(task.to_dict())
-    assert again == task and again.to_dict()["parameters"]["sky"]["distribution"] == law
+    assert again == task and again.to_dict()["parameters"]["sky"]["distribution"] == distribution
     colors = [task.variant("autumn").sample(3, index)["environment_params"]["sky_color"] for index in range(5)]
     assert colors == [again.variant("autumn").sample(3, index)["environment_params"]["sky_color"] for index in range(5)]
     assert all(0 <= channel <= 1 for color in colors for channel in color)

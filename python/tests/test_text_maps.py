@@ -1,6 +1,4 @@
-"""Tests `examples/python/text_maps.py`: walls, objects, doors and lava are placed where their letters are, and the world
-is valid.
-"""
+"""Tests `examples/python/text_maps.py`: walls, objects, doors and lava are at their letters, and the world is valid."""
 
 from __future__ import annotations
 
@@ -127,14 +125,14 @@ def test_text_that_is_not_a_map_is_refused(maps: ModuleType, text: str) -> None:
 
 
 def test_objects_are_at_their_letters(maps: ModuleType) -> None:
-    chance, read = random.Random(3), 0
+    rng, num_read = random.Random(3), 0
     for _ in range(100):
-        rows = ["".join(chance.choices("*PGA IH?", k=chance.randint(1, 12))) for _ in range(chance.randint(1, 9))]
+        rows = ["".join(rng.choices("*PGA IH?", k=rng.randint(1, 12))) for _ in range(rng.randint(1, 9))]
         try:
             world = maps.dmlab("drawn", "\n".join(rows))
         except SystemExit:
             continue
-        read += 1
+        num_read += 1
         assert problems(world) == []
         text = world["environment_params"]["layout"]["text"]
         middle = [len(text[0]) / 2, len(text) / 2]
@@ -142,7 +140,7 @@ def test_objects_are_at_their_letters(maps: ModuleType) -> None:
             column, row = (thing["coordinates"][0] / 3.125 + middle[0], middle[1] - thing["coordinates"][1] / 3.125)
             assert text[int(row)][int(column)] in {"goal": "G", "apple": "A", "door": "IH"}[thing["tag"]]
         assert len(world["objects"]) == sum(letter in "GAIH" for row in rows for letter in row)
-    assert read > 50
+    assert num_read > 50
 
 
 def test_script_writes_a_world(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Copies and pickles contain values: later changes by the caller, or to files, do not affect them."""
+"""Copies and pickles are independent: later changes by the caller, or to files, do not affect them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from driftworld._equality import first_difference
 from driftworld.envs import DriftworldEnv, DriftworldVectorEnv
 
 SMALL: dict[str, Any] = {"modalities": ["rgb", "state"], "size": 16}
-WAYS: dict[str, Callable[[Any], Any]] = {
+COPIERS: dict[str, Callable[[Any], Any]] = {
     "copy": copy.copy,
     "deepcopy": copy.deepcopy,
     "pickle": lambda env: pickle.loads(pickle.dumps(env)),
 }
-EACH_WAY = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+EACH_COPIER = pytest.mark.parametrize("copier", COPIERS.values(), ids=COPIERS)
 
 
 class Own(DriftworldEnv):
@@ -45,7 +45,7 @@ class OwnVector(DriftworldVectorEnv):
         self.names = names
 
 
-def same_life(one: Any, other: Any, steps: int = 6) -> None:
+def expect_same_steps(one: Any, other: Any, steps: int = 6) -> None:
     one.action_space.seed(0)
     for number in range(steps):
         action = one.action_space.sample()
@@ -54,34 +54,34 @@ def same_life(one: Any, other: Any, steps: int = 6) -> None:
     assert first_difference(one.reset(seed=8), other.reset(seed=8), "reset with a seed") is None
 
 
-@EACH_WAY
-def test_subclass_with_its_own_arguments_continues(way: Callable[[Any], Any]) -> None:
+@EACH_COPIER
+def test_subclass_with_its_own_arguments_continues(copier: Callable[[Any], Any]) -> None:
     env = Own(2.0, name="mine")
     env.reset(seed=3)
-    other = way(env)
+    other = copier(env)
     assert type(other) is Own and (other.scale, other.name) == (2.0, "mine")
-    same_life(env, other)
+    expect_same_steps(env, other)
     envs = OwnVector(["red", "dusk"])
     envs.reset(seed=3)
-    other = way(envs)
+    other = copier(envs)
     assert type(other) is OwnVector and other.names == ["red", "dusk"]
-    same_life(envs, other)
+    expect_same_steps(envs, other)
 
 
-@EACH_WAY
-def test_changing_a_world_later_changes_no_copy(way: Callable[[Any], Any]) -> None:
+@EACH_COPIER
+def test_changing_a_world_later_changes_no_copy(copier: Callable[[Any], Any]) -> None:
     world = driftworld.variant("find_objects#red").sample(seed=1)
     env = DriftworldEnv(world=world, **SMALL)
     env.reset(seed=0)
     world["max_steps"] = 5
     world["objects"].clear()
-    other = way(env)
+    other = copier(env)
     assert other.state()["max_steps"] == env.state()["max_steps"] != 5
-    same_life(env, other)
+    expect_same_steps(env, other)
 
 
-@EACH_WAY
-def test_changed_or_missing_files_change_no_copy(way: Callable[[Any], Any], task_file: Path, world_file: Path) -> None:
+@EACH_COPIER
+def test_changed_or_missing_files_change_no_copy(copier: Callable[[Any], Any], task_file: Path, world_file: Path) -> None:
     task = DriftworldEnv(f"{task_file}#landmarks", **SMALL)
     world = DriftworldVectorEnv(num_envs=2, world=world_file, **SMALL)
     for env in (task, world):
@@ -90,32 +90,32 @@ def test_changed_or_missing_files_change_no_copy(way: Callable[[Any], Any], task
     task_file.write_text(json.dumps({**document, "variants": {}}), encoding="utf-8")
     world_file.unlink()
     for env in (task, world):
-        same_life(env, way(env))
+        expect_same_steps(env, copier(env))
 
 
-@EACH_WAY
-def test_changing_options_later_changes_no_copy(way: Callable[[Any], Any]) -> None:
+@EACH_COPIER
+def test_changing_options_later_changes_no_copy(copier: Callable[[Any], Any]) -> None:
     drift = {"to": "dusk", "episodes": 3}
     table = [[10.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
     env = DriftworldEnv("find_objects#red", drift=drift, actions=table, modalities=["state"], size=16)
     env.reset(seed=0)
     drift["to"] = "blue"
     table.append([1.0, 1.0, 1.0])
-    other = way(env)
+    other = copier(env)
     assert other.action_space == env.action_space
-    same_life(env, other)
+    expect_same_steps(env, other)
 
 
-@EACH_WAY
-def test_copies_have_their_own_random_generators(way: Callable[[Any], Any]) -> None:
+@EACH_COPIER
+def test_copies_have_their_own_random_generators(copier: Callable[[Any], Any]) -> None:
     envs = DriftworldVectorEnv("find_objects", 2, modalities="state", size=16)
     envs.reset()
-    expected = way(envs)
-    other = way(envs)
+    expected = copier(envs)
+    other = copier(envs)
     # Draws from the original's generators have no effect on its copies.
     [generator.integers(9) for generator in envs.np_random]
     envs.reset(seed=77)
-    same_life(other, expected)
+    expect_same_steps(other, expected)
 
 
 def test_copy_of_an_unstarted_environment_is_unstarted() -> None:
@@ -128,8 +128,8 @@ def test_copy_of_an_unstarted_environment_is_unstarted() -> None:
     env.step(env.action_space.sample())
 
 
-@EACH_WAY
-def test_long_queue_is_copied_with_its_position(way: Callable[[Any], Any]) -> None:
+@EACH_COPIER
+def test_long_queue_is_copied_with_its_position(copier: Callable[[Any], Any]) -> None:
     envs = DriftworldVectorEnv("find_objects", 3, modalities="state", size=16, max_episode_steps=1)
     queue = ["red", "blue", "green", "dusk", "near"] * 1000
     envs.reset(seed=0, options={"queue": queue})
@@ -137,7 +137,7 @@ def test_long_queue_is_copied_with_its_position(way: Callable[[Any], Any]) -> No
     for _ in range(4):
         envs.step(action)
     queue.clear()
-    same_life(envs, way(envs), steps=9)
+    expect_same_steps(envs, copier(envs), steps=9)
 
 
 def scenario(folder: Path) -> Curriculum:
@@ -158,16 +158,16 @@ def worlds(curriculum: Curriculum) -> list[Any]:
 def test_curriculum_keeps_its_tasks_and_worlds(task_file: Path, world_file: Path) -> None:
     mine, again = scenario(task_file.parent), scenario(task_file.parent)
     assert mine == again and hash(mine) == hash(again) and mine != mine.scenario
-    lived = worlds(mine)
+    before = worlds(mine)
     document = json.loads(task_file.read_text(encoding="utf-8"))
     document["description"] = "another"
     task_file.write_text(json.dumps(document), encoding="utf-8")
     assert scenario(task_file.parent) != mine
     task_file.unlink()
     world_file.unlink()
-    for way in WAYS.values():
-        other = way(mine)
-        assert other == mine and worlds(other) == lived and other.scenario == mine.scenario
+    for copier in COPIERS.values():
+        other = copier(mine)
+        assert other == mine and worlds(other) == before and other.scenario == mine.scenario
         assert other.blocks == mine.blocks
 
 

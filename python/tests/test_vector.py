@@ -1,4 +1,4 @@
-"""The native vector environment matches Gymnasium's own bit for bit, in every autoreset mode."""
+"""The native vector environment matches Gymnasium's own, bit for bit, in every autoreset mode."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def expect_same(left: Any, right: Any, place: str) -> None:
     assert difference is None, difference
 
 
-def live_side_by_side(ours: Any, theirs: Any, steps: int, *, by_mask: bool = False) -> int:
-    """Steps both with the same actions; returns the number of ended episodes."""
+def step_both(ours: Any, theirs: Any, steps: int, *, by_mask: bool = False) -> int:
+    """Steps both with the same actions, expects equal results, and returns the number of ended episodes."""
     ends = 0
     theirs.action_space.seed(0)
     for number in range(steps):
@@ -65,19 +65,19 @@ def test_each_task_matches_gymnasiums_loop(env_id: str, actions: str) -> None:
     options = {"size": 40, "actions": actions, "max_episode_steps": 7}
     ours, theirs = native(env_id, 3, **options), sync(env_id, 3, **options)
     expect_same(ours.reset(seed=4), theirs.reset(seed=4), "reset")
-    assert live_side_by_side(ours, theirs, 40) > 5
+    assert step_both(ours, theirs, 40) > 5
     expect_same(ours.reset(), theirs.reset(), "reset without a seed")
     expect_same(ours.reset(seed=[9, 3, 9]), theirs.reset(seed=[9, 3, 9]), "reset with a list")
 
 
 @ANY_MODE
-def test_each_mode_of_autoreset_is_gymnasiums(mode: Any) -> None:
-    # Episodes also end by themselves: the goal is near, and there is a limit.
+def test_each_autoreset_mode_matches_gymnasium(mode: Any) -> None:
+    # Episodes end in two ways: the goal is near, and there is a step limit.
     options = {"variant": "near", "size": 40, "modalities": ["rgb", "state"], "max_episode_steps": 6}
     ours, theirs = native(FIND, 4, autoreset_mode=mode, **options), sync(FIND, 4, mode, **options)
     assert ours.metadata["autoreset_mode"] is mode
     expect_same(ours.reset(seed=0), theirs.reset(seed=0), "reset")
-    assert live_side_by_side(ours, theirs, 50, by_mask=mode is AutoresetMode.DISABLED) > 10
+    assert step_both(ours, theirs, 50, by_mask=mode is AutoresetMode.DISABLED) > 10
 
 
 @NEEDS_MASKS
@@ -92,11 +92,11 @@ def test_episodes_that_end_at_different_times_are_handled(mode: Any) -> None:
     world = gym.make("driftworld/GetToGoal-v0", variant="plain").unwrapped
     world.reset(seed=1)
     documents = []
-    for away in (4.0, 9.0, 14.0):
+    for distance in (4.0, 9.0, 14.0):
         document = copy.deepcopy(world.state())
         del document["progress"]
         east, north = document["objects"][0]["coordinates"]
-        document["agent_params"].update(coordinates=[east - away, north], heading=90.0)
+        document["agent_params"].update(coordinates=[east - distance, north], heading=90.0)
         documents.append(document)
     for env in (ours, theirs):
         env.reset(seed=5)
@@ -115,7 +115,7 @@ def test_episodes_that_end_at_different_times_are_handled(mode: Any) -> None:
     assert len(ends) > 1, "the episodes ended together"
 
 
-def test_the_final_observation_is_the_last_and_not_the_next() -> None:
+def test_final_observation_belongs_to_the_ended_episode() -> None:
     options = {"modalities": "rgb", "size": 40, "max_episode_steps": 3}
     ours = native(FIND, 2, autoreset_mode="same_step", **options)
     alone = gym.make(FIND, modalities="rgb", size=40, disable_env_checker=True).unwrapped
@@ -142,13 +142,13 @@ def test_without_autoreset_an_ended_episode_cannot_continue() -> None:
 
 @pytest.mark.parametrize("context", ["spawn", "fork", "forkserver"])
 @pytest.mark.filterwarnings("ignore:This process.*multi-threaded:DeprecationWarning")
-def test_processes_of_gymnasiums_live_the_same(context: str) -> None:
+def test_gymnasiums_processes_give_the_same_results(context: str) -> None:
     options = {"size": 40, "modalities": ["rgb", "state"], "max_episode_steps": 6}
     ours = native(FIND, 2, **options)
     theirs = gym.make_vec(FIND, num_envs=2, vectorization_mode="async", vector_kwargs={"context": context}, **options)
     try:
         expect_same(ours.reset(seed=2), theirs.reset(seed=driftworld.spread_seeds(2, 2)), "reset")
-        assert live_side_by_side(ours, theirs, 20) >= 4
+        assert step_both(ours, theirs, 20) >= 4
     finally:
         theirs.close()
 
@@ -175,16 +175,16 @@ def test_error_in_a_worker_keeps_its_fields() -> None:
 
 def test_observations_are_copies_unless_views_are_requested() -> None:
     views, copies = native(FIND, 2, size=40, copy=False), native(FIND, 2, size=40)
-    kept = {}
+    returned = {}
     for name, env in (("views", views), ("copies", copies)):
-        kept[name], _ = env.reset(seed=0)
-        kept[name + " before"] = {modality: array.copy() for modality, array in kept[name].items()}
+        returned[name], _ = env.reset(seed=0)
+        returned[name + " before"] = {modality: array.copy() for modality, array in returned[name].items()}
         for _ in range(3):
             env.step(np.ones(env.action_space.shape, dtype=np.float32))
-    assert first_difference(kept["copies"], kept["copies before"]) is None
-    assert first_difference(kept["views"], kept["views before"]) is not None
+    assert first_difference(returned["copies"], returned["copies before"]) is None
+    assert first_difference(returned["views"], returned["views before"]) is not None
     again, _ = views.reset(seed=0)
-    assert all(np.shares_memory(again[name], kept["views"][name]) for name in again)
+    assert all(np.shares_memory(again[name], returned["views"][name]) for name in again)
 
 
 def test_views_outlive_their_environment() -> None:
@@ -201,17 +201,17 @@ def test_threads_and_files_are_released_with_the_environment() -> None:
     if not tasks.is_dir():
         pytest.skip("threads are counted in /proc")
 
-    def held() -> tuple[int, int]:
+    def count_open() -> tuple[int, int]:
         gc.collect()
         return len(list(tasks.iterdir())), len(list(files.iterdir()))
 
-    before = held()
+    before = count_open()
     for _ in range(20):
         envs = native(FIND, 4, modalities="state", size=16, num_threads=3)
         envs.reset(seed=0)
         envs.close()
         del envs
-    assert held() == before
+    assert count_open() == before
 
 
 def test_observations_convert_to_other_libraries_without_a_copy() -> None:
@@ -224,7 +224,7 @@ def test_observations_convert_to_other_libraries_without_a_copy() -> None:
 def test_number_of_threads_changes_nothing(num_threads: int) -> None:
     one, other = (native(FIND, 5, size=40, num_threads=threads, max_episode_steps=6) for threads in (1, num_threads))
     expect_same(one.reset(seed=0), other.reset(seed=0), "reset")
-    live_side_by_side(one, other, 15)
+    step_both(one, other, 15)
 
 
 def test_each_environment_may_have_its_own_variant() -> None:
@@ -238,19 +238,19 @@ def test_each_environment_may_have_its_own_variant() -> None:
         )
     )
     expect_same(infos, theirs.reset(seed=0)[1], "infos")
-    made = native(FIND, 3, variants=names, modalities="state", size=40, info="full")
-    expect_same(made.reset(seed=0), ours.reset(seed=0), "made with variants")
+    constructed = native(FIND, 3, variants=names, modalities="state", size=40, info="full")
+    expect_same(constructed.reset(seed=0), ours.reset(seed=0), "made with variants")
     assert [each.partition("#")[2] for each in ours.reset()[1]["variant_id"]] == names
 
 
-def test_queue_is_dealt_out_like_cards() -> None:
+def test_queue_is_distributed_round_robin() -> None:
     ours = native(FIND, 2, modalities="state", size=16, max_episode_steps=1, info="full")
-    told = [ours.reset(seed=0, options={"queue": ["red", "blue", "green"]})[1]]
+    episode_infos = [ours.reset(seed=0, options={"queue": ["red", "blue", "green"]})[1]]
     for _ in range(6):
         _, _, _, truncated, infos = ours.step(ours.action_space.sample())
         if not truncated.any():
-            told.append(infos)
-    names = [name.partition("#")[2] for infos in told for name in infos["variant_id"]]
+            episode_infos.append(infos)
+    names = [name.partition("#")[2] for infos in episode_infos for name in infos["variant_id"]]
     assert names == ["red", "blue", "green", "red", "blue", "green", "red", "blue"]
 
 
@@ -369,7 +369,7 @@ def test_neighbouring_seeds_share_no_world(seed: int) -> None:
             hashes |= set(ours.step(ours.action_space.sample())[4]["world_hash"])
         seen.append(hashes)
     assert [len(hashes) for hashes in seen] == [128, 128] and not seen[0] & seen[1]
-    # The first is the seed itself, as for a single environment, and the others do not depend on how many there are.
+    # The first is the seed itself, as for a single environment; the others do not depend on the number of environments.
     assert driftworld.spread_seeds(seed, 1) == [seed]
     assert driftworld.spread_seeds(seed, 5) == driftworld.spread_seeds(seed, 32)[:5]
 
@@ -393,7 +393,7 @@ def test_step_limit_and_image_size_do_not_affect_objects() -> None:
 def test_vector_matches_single_environments_for_all_options(options: dict[str, Any], seed: int, num_envs: int) -> None:
     ours, theirs = native(FIND, num_envs, **options), sync(FIND, num_envs, **options)
     expect_same(ours.reset(seed=seed), theirs.reset(seed=seed), "reset")
-    live_side_by_side(ours, theirs, 12)
+    step_both(ours, theirs, 12)
 
 
 @pytest.mark.parametrize("mode", ["next_step", "same_step", "disabled"])
@@ -411,12 +411,12 @@ def test_info_none_changes_nothing_else(mode: str, modalities: Any) -> None:
     without.unwrapped.set_next(variant="red")
     for _ in range(7):
         *found, infos = without.step(np.zeros(3, dtype=np.int64))
-        *expected, told = with_infos.step(np.zeros(3, dtype=np.int64))
+        *expected, full_infos = with_infos.step(np.zeros(3, dtype=np.int64))
         assert first_difference(found, expected) is None
         ended = expected[2] | expected[3]
         if mode == "same_step" and ended.any():
             assert set(infos) == {"final_obs", "_final_obs"}
-            assert first_difference(infos, {key: told[key] for key in infos}) is None
+            assert first_difference(infos, {key: full_infos[key] for key in infos}) is None
         else:
             assert infos == {}
         if mode == "disabled" and ended.any():

@@ -1,4 +1,4 @@
-"""Curricula run in many environments at the same time write the same log as in a single one."""
+"""Curricula that run in many environments at once write the same log as in a single one."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from test_lifetimes import QUARRY
 
 
 class Looker:
-    """Turns depending on its observations and its seed; learns nothing. One per environment acts like one alone."""
+    """Turns according to its observations and its seed, and learns nothing: one for each environment act like a single one."""
 
     name = "looker"
 
     def __init__(self) -> None:
-        self.chance = 0
+        self.seed = 0
 
     def begin(self, label: str | None, seed: int) -> None:
-        self.chance = seed
+        self.seed = seed
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        turn = (int(observation.sum()) * 31 + self.chance % 1009) % 180 - 90
+        turn = (int(observation.sum()) * 31 + self.seed % 1009) % 180 - 90
         return np.array([8, turn, 0], dtype=np.float32)
 
     def learn(self, transition: Transition) -> None:
@@ -93,7 +93,7 @@ def test_one_vector_environment_logs_the_same_as_run(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("num_envs", [2, 3, 8])
-def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: Path, num_envs: int) -> None:
+def test_evaluations_do_not_depend_on_the_number_of_environments(tmp_path: Path, num_envs: int) -> None:
     regimes = [
         {"task": "get_to_goal", "variant": name, "count": 7, "seed": 4, "max_steps": 300} for name in ("plain", "held")
     ]
@@ -102,8 +102,7 @@ def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: 
     curriculum.run(Looker(), tmp_path / "run", **SMALL)
     many = Many(num_envs, Looker)
     curriculum.run_vector(many, tmp_path / "vector", num_envs=num_envs, **SMALL)
-    # Without learning, the rewards are also the same in learning blocks; and the log has the same rows in the same
-    # order.
+    # The agent does not learn, so rewards are the same in learning blocks too, and so is the order of the rows.
     assert rows(tmp_path / "vector") == rows(tmp_path / "run")
     log = read_log(tmp_path / "vector")
     assert len({str(reward) for reward in log["reward"]}) >= 3
@@ -111,8 +110,8 @@ def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: 
     assert many.steps == sum(learned)
 
 
-@pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
-def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> None:
+@pytest.mark.parametrize("finished", [1, 4, 6, 9, 12, 16])
+def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, finished: int) -> None:
     class Class:
         """One learner for three environments."""
 
@@ -120,13 +119,13 @@ def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> N
 
         def __init__(self) -> None:
             self.pupil = Pupil()
-            self.chances = [0] * 3
+            self.seeds = [0] * 3
 
         def begin(self, env: int, label: str | None, seed: int) -> None:
-            self.chances[env] = seed
+            self.seeds[env] = seed
 
         def act(self, observations: Any, infos: dict[str, Any]) -> Any:
-            turns = [(self.pupil.knowledge * 37 + chance % 1000) % 180 - 90 for chance in self.chances]
+            turns = [(self.pupil.knowledge * 37 + seed % 1000) % 180 - 90 for seed in self.seeds]
             return np.array([[8, turn, 0] for turn in turns], dtype=np.float32)
 
         def learn(self, transition: VectorTransition) -> None:
@@ -145,9 +144,9 @@ def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> N
     curriculum, undisturbed, second = small(), Class(), Class()
     curriculum.run_vector(undisturbed, tmp_path / "whole", num_envs=3, **SMALL)
     stopped = curriculum.run_vector(
-        Class(), tmp_path / "log", num_envs=3, watch=lambda experience, reward: experience.number + 1 < kept, **SMALL
+        Class(), tmp_path / "log", num_envs=3, watch=lambda experience, reward: experience.number + 1 < finished, **SMALL
     )
-    assert (stopped.experiences, stopped.finished) == (kept, False)
+    assert (stopped.experiences, stopped.finished) == (finished, False)
     assert curriculum.run_vector(second, tmp_path / "log", num_envs=3, **SMALL).finished
     assert rows(tmp_path / "log") == rows(tmp_path / "whole")
     assert second.pupil.knowledge == undisturbed.pupil.knowledge != 0

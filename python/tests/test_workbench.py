@@ -1,4 +1,4 @@
-"""The workbench is served for a notebook's frame."""
+"""`driftworld.studio` serves the workbench and shows it in a notebook's frame."""
 
 from __future__ import annotations
 
