@@ -1,4 +1,4 @@
-"""The client's side of L2Explorer's three side channels: sends and receives JSON, and keeps every answer."""
+"""The client's end of L2Explorer's three side channels: sends and receives JSON, and stores every answer."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class JsonChannel(RawChannel):
         return token
 
     def send_text(self, text: str) -> None:
-        """Queues a string, including characters beyond ASCII, which clients do not send by themselves."""
+        """Queues a string, which may contain non-ASCII characters (the clients' own functions send only ASCII)."""
         data = text.encode()
         self.send_bytes(len(data).to_bytes(4, "little") + data)
 

@@ -1,4 +1,4 @@
-"""A common interface to clients of every generation, and a launcher for them and their executables."""
+"""A common interface to clients of all generations, and a launcher for clients and executables."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ GENERATION = tuple(int(number) for number in re.findall(r"\d+", mlagents_envs.__
 #: The behaviour's name.
 BEHAVIOR = "L2Explorer?team=0"
 
-#: Timeout for events that normally take a moment.
-PATIENCE_SECS = 30
+#: Timeout for events that normally happen at once.
+TIMEOUT_SECS = 30
 
 #: An action that does nothing.
 REST = (0.0, 0.0, 0.0)
@@ -34,13 +34,13 @@ Floats = npt.NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Seen:
-    """What a client observes of the agent at one moment."""
+    """What a client receives about the agent at one moment."""
 
     agent_id: int
     reward: float
     #: The observations, as the client returns them.
     arrays: list[Floats]
-    #: Whether the step limit ended the episode; only set at the end of an episode.
+    #: Whether the step limit ended the episode.
     truncated: bool = False
 
     @property
@@ -67,7 +67,7 @@ class Seen:
         return self.arrays[3]
 
     def equals(self, other: Seen) -> bool:
-        """Whether both have the same observations, bit for bit."""
+        """Whether both have equal observations, bit for bit."""
         return len(self.arrays) == len(other.arrays) and all(
             mine.shape == theirs.shape and bool((mine == theirs).all())
             for mine, theirs in zip(self.arrays, other.arrays)
@@ -85,7 +85,7 @@ class Moment:
 
 
 class Client:
-    """A client of the installed generation, with its executable."""
+    """A client of the installed generation, and its executable."""
 
     def __init__(self, env: UnityEnvironment, process: subprocess.Popen[Any] | None) -> None:
         self.env = env
@@ -163,13 +163,13 @@ class Client:
         return [(*shape[1:], shape[0]) if GENERATION >= (1, 0) and len(shape) == 3 else shape for shape in shapes]
 
     def communicator(self) -> Any:
-        """The client's communicator, for messages that the client itself never sends."""
+        """The client's communicator, to send messages that the client itself never sends."""
         return self.env.communicator if GENERATION < (0, 17) else self.env._communicator
 
     def close(self) -> int:
         """Ends the session; returns the executable's exit code."""
         self.env.close()
-        return self.process.wait(PATIENCE_SECS)
+        return self.process.wait(TIMEOUT_SECS)
 
 
 class Launcher:
@@ -192,13 +192,13 @@ class Launcher:
         worker: int = 0,
         **options: Any,
     ) -> Client:
-        """Starts a client that starts the executable itself, as clients do."""
+        """Starts a client, which starts the executable itself."""
         options[ARGS] = list(args)
         env = UnityEnvironment(
             str(self.file_name),
             worker_id=worker,
             base_port=port or free_port(),
-            timeout_wait=PATIENCE_SECS,
+            timeout_wait=TIMEOUT_SECS,
             side_channels=list(channels),
             **options,
         )
@@ -213,8 +213,8 @@ class Launcher:
         self._processes.append(process)
         return process
 
-    def meet(self, *args: str, channels: Sequence[SideChannel] = ()) -> Client:
-        """Starts a client in Unity's editor mode, which starts no executable, and an executable for it."""
+    def start_in_editor_mode(self, *args: str, channels: Sequence[SideChannel] = ()) -> Client:
+        """Starts a client in Unity's editor mode, in which it starts no executable, and an executable for it."""
         port = free_port()
         process = self.run("--mlagents-port", str(port), *args)
         self._clients.append(Client(self.await_executable(port, channels), process))
@@ -223,7 +223,7 @@ class Launcher:
     @staticmethod
     def await_executable(port: int, channels: Sequence[SideChannel] = ()) -> UnityEnvironment:
         """Starts a client in editor mode, which waits for an executable."""
-        return UnityEnvironment(None, base_port=port, timeout_wait=PATIENCE_SECS, side_channels=list(channels))
+        return UnityEnvironment(None, base_port=port, timeout_wait=TIMEOUT_SECS, side_channels=list(channels))
 
     def end(self) -> None:
         for client in self._clients:
@@ -232,7 +232,7 @@ class Launcher:
         for process in [*self._processes, *(client.process for client in self._clients)]:
             if process.poll() is None:
                 process.kill()
-            process.wait(PATIENCE_SECS)
+            process.wait(TIMEOUT_SECS)
             for pipe in (process.stdout, process.stderr):
                 if pipe is not None:
                     pipe.close()
@@ -257,13 +257,13 @@ def free_port(count: int = 1) -> int:
 
 def code_and_errors(process: subprocess.Popen[str]) -> tuple[int, str]:
     """The exit code and the error output of an executable that ends by itself."""
-    _, errors = process.communicate(timeout=PATIENCE_SECS)
+    _, errors = process.communicate(timeout=TIMEOUT_SECS)
     return process.returncode, errors
 
 
 @contextmanager
-def announcing_version(version: str, monkeypatch: Any) -> Iterator[None]:
-    """Makes clients announce this version of the protocol."""
+def announced_version(version: str, monkeypatch: Any) -> Iterator[None]:
+    """Makes clients announce this version of the protocol within a block."""
     with monkeypatch.context() as patch:
         patch.setattr(UnityEnvironment, "API_VERSION", version)
         yield

@@ -11,8 +11,8 @@ import pytest
 from channels import Channels
 from clients import Launcher
 
-# The default folder of the original's example files, next to the checkout.
-BESIDE = Path(__file__).parents[4] / "shared" / "reference"
+# The default folder of the original's example files, beside the checkout.
+DEFAULT_REFERENCE = Path(__file__).parents[4] / "shared" / "reference"
 
 
 @pytest.fixture(scope="session")
@@ -44,7 +44,7 @@ def channels() -> Channels:
 @pytest.fixture(scope="session")
 def reference() -> Path:
     """Example files of the original."""
-    folder = Path(os.environ.get("DRIFTWORLD_REFERENCE") or BESIDE) / "l2explorer"
+    folder = Path(os.environ.get("DRIFTWORLD_REFERENCE") or DEFAULT_REFERENCE) / "l2explorer"
     if not folder.is_dir():
-        pytest.skip(f"{folder} is not there: set DRIFTWORLD_REFERENCE to where the original's example files are")
+        pytest.skip(f"{folder} does not exist: set DRIFTWORLD_REFERENCE to the folder of the original's example files")
     return folder

@@ -1,4 +1,4 @@
-"""L2Explorer's three channels: worlds and objects sent mid-session, reports on the world, and refused messages."""
+"""L2Explorer's three channels: worlds and objects sent mid-session, reports about the world, and rejected messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from channels import Channels, RawChannel
 from clients import Client, Launcher
 from worlds import AHEAD, thing, world
 
-#: Segmentation colour of objects that pay nothing.
+#: Segmentation colour of objects without reward.
 NEUTRAL = np.array([255, 178, 178], dtype=np.float32) / np.float32(255)
 
 
@@ -159,10 +159,10 @@ def test_observers_are_listed(client: Client, channels: Channels) -> None:
     assert answer["payload"] == {"state": ["agent_params", "environment_params", "objects", "game_mode"]}
 
 
-@pytest.mark.parametrize("beside", [False, True], ids=["in the payload", "beside the action"])
-def test_active_observers_report_the_world_after_each_step(client: Client, channels: Channels, beside: bool) -> None:
+@pytest.mark.parametrize("is_beside_action", [False, True], ids=["in the payload", "beside the action"])
+def test_active_observers_report_the_world_after_each_step(client: Client, channels: Channels, is_beside_action: bool) -> None:
     parts = ["agent_params", "objects"]
-    if beside:
+    if is_beside_action:
         token = channels.state.say("set_active_observers", state=parts)
     else:
         token = channels.state.say("set_active_observers", {"state": parts})

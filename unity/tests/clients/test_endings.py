@@ -1,4 +1,4 @@
-"""How sessions end: the client closes, quits, is killed or paused, loses its connection, or sends invalid data."""
+"""Ends of sessions: the client closes, quits, is killed or paused, loses its connection, or sends invalid data."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from mlagents_envs.exception import (
 from mlagents_envs.rpc_communicator import RpcCommunicator
 
 from channels import Channels
-from clients import GENERATION, PATIENCE_SECS, Client, Launcher, announcing_version, code_and_errors, free_port
+from clients import GENERATION, TIMEOUT_SECS, Client, Launcher, announced_version, code_and_errors, free_port
 from worlds import AHEAD, thing, world
 
 
@@ -48,7 +48,7 @@ def test_closing_twice_is_refused_by_the_client(launcher: Launcher) -> None:
 
 
 def test_a_client_in_editor_mode_closes_like_any_other(launcher: Launcher) -> None:
-    client = launcher.meet()
+    client = launcher.start_in_editor_mode()
     client.reset()
     client.step(AHEAD)
     client.env.close()
@@ -67,7 +67,7 @@ def test_the_executable_waits_for_a_client_that_comes_later(launcher: Launcher) 
 
 
 def test_the_command_quit_ends_the_executable_with_0(launcher: Launcher) -> None:
-    client = launcher.meet()
+    client = launcher.start_in_editor_mode()
     client.reset()
     message = UnityMessageProto()
     message.header.status = 200
@@ -78,7 +78,7 @@ def test_the_command_quit_ends_the_executable_with_0(launcher: Launcher) -> None
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf"), float("-inf")])
 def test_an_action_that_is_not_finite_ends_both_at_once_and_is_explained(launcher: Launcher, number: float) -> None:
-    client = launcher.meet()
+    client = launcher.start_in_editor_mode()
     client.reset()
     with pytest.raises(UnityCommunicatorStoppedException):
         client.step((number, 0.0, 0.0))
@@ -93,7 +93,7 @@ def test_a_client_of_a_different_major_version_is_refused_on_both_sides(
     port = free_port()
     process = launcher.run("--mlagents-port", str(port))
     with (
-        announcing_version(version, monkeypatch),
+        announced_version(version, monkeypatch),
         pytest.raises(UnityEnvironmentException, match="version is not compatible"),
     ):
         launcher.await_executable(port)
@@ -118,7 +118,7 @@ env.close()
 """
 
 
-class Other:
+class SeparateClient:
     """A client in a separate process."""
 
     def __init__(self, name: str, port: int) -> None:
@@ -141,15 +141,15 @@ class Other:
     def end(self) -> None:
         if self.process.poll() is None:
             self.process.kill()
-        self.process.communicate(timeout=PATIENCE_SECS)
+        self.process.communicate(timeout=TIMEOUT_SECS)
 
 
 @pytest.fixture
-def other(launcher: Launcher) -> Iterator[tuple[Other, subprocess.Popen[str]]]:
-    """A client of a separate process, in editor mode, after one step; and the executable."""
+def other(launcher: Launcher) -> Iterator[tuple[SeparateClient, subprocess.Popen[str]]]:
+    """A client in a separate process, in editor mode, after one step; and the executable."""
     port = free_port()
     process = launcher.run("--mlagents-port", str(port))
-    client = Other("", port)
+    client = SeparateClient("", port)
     client.read_line()
     client.request_step()
     assert client.read_line() > 0
@@ -159,7 +159,7 @@ def other(launcher: Launcher) -> Iterator[tuple[Other, subprocess.Popen[str]]]:
 
 @pytest.mark.parametrize("sign", [signal.SIGKILL, signal.SIGTERM])
 def test_a_client_that_is_killed_ends_the_executable_with_0(
-    other: tuple[Other, subprocess.Popen[str]], sign: signal.Signals
+    other: tuple[SeparateClient, subprocess.Popen[str]], sign: signal.Signals
 ) -> None:
     client, process = other
     client.process.send_signal(sign)
@@ -168,18 +168,18 @@ def test_a_client_that_is_killed_ends_the_executable_with_0(
 
 
 def test_a_client_that_is_killed_leaves_no_process_behind(launcher: Launcher) -> None:
-    client = Other(str(launcher.file_name), free_port())
+    client = SeparateClient(str(launcher.file_name), free_port())
     handle = os.pidfd_open(int(client.read_line()))
     try:
         client.process.kill()
-        ended, _, _ = select.select([handle], [], [], PATIENCE_SECS)
-        assert ended == [handle], "the executable that it started has ended as well"
+        ended, _, _ = select.select([handle], [], [], TIMEOUT_SECS)
+        assert ended == [handle], "the executable that the client started must end too"
     finally:
         os.close(handle)
         client.end()
 
 
-def test_a_client_that_is_stopped_is_waited_for(other: tuple[Other, subprocess.Popen[str]]) -> None:
+def test_the_executable_waits_for_a_client_that_is_stopped(other: tuple[SeparateClient, subprocess.Popen[str]]) -> None:
     client, process = other
     client.process.send_signal(signal.SIGSTOP)
     client.request_step()
@@ -190,7 +190,7 @@ def test_a_client_that_is_stopped_is_waited_for(other: tuple[Other, subprocess.P
     assert client.process.stdin is not None
     client.process.stdin.close()
     client.process.stdin = None
-    assert client.process.wait(PATIENCE_SECS) == 0
+    assert client.process.wait(TIMEOUT_SECS) == 0
     assert code_and_errors(process)[0] == 0
 
 
@@ -233,7 +233,7 @@ class Cable:
         for end in self._ends:
             end.shutdown(socket.SHUT_RDWR)
         for thread in self._threads:
-            thread.join(PATIENCE_SECS)
+            thread.join(TIMEOUT_SECS)
         for end in [*self._ends, self._server]:
             end.close()
 
@@ -246,12 +246,12 @@ def test_a_connection_that_is_lost_ends_the_executable_with_0(
     processes: list[subprocess.Popen[str]] = []
     initialize = RpcCommunicator.initialize
 
-    def start_the_other_end(*args: Any) -> Any:
+    def start_the_executable_first(*args: Any) -> Any:
         # The client is already listening, but not yet waiting for the executable.
         processes.append(launcher.run("--mlagents-port", str(cable.port)))
         return initialize(*args)
 
-    monkeypatch.setattr(RpcCommunicator, "initialize", start_the_other_end)
+    monkeypatch.setattr(RpcCommunicator, "initialize", start_the_executable_first)
     env = launcher.await_executable(port)
     client = Client(env, processes[0])
     client.reset()

@@ -1,4 +1,4 @@
-"""The side channels of mlagents-envs itself: environment parameters, float properties, engine configuration."""
+"""The side channels that mlagents-envs itself provides: environment parameters, float properties, engine configuration."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def parameters() -> EnvironmentParametersChannel:
 
 @pytest.fixture
 def client(launcher: Launcher, channels: Channels, parameters: EnvironmentParametersChannel) -> Client:
-    """A client with parameters, in a world of its own."""
+    """A client with a channel for parameters, in a world with one object."""
     client = launcher.start("-logFile", "remarks.log", channels=[*channels.all, parameters])
     channels.reset.say("reset_environment", world(thing(0, 15)))
     client.reset()
@@ -30,7 +30,7 @@ def client(launcher: Launcher, channels: Channels, parameters: EnvironmentParame
 
 
 def sampler(name: str) -> OutgoingMessage:
-    """A parameter to be sampled from a uniform distribution, as newer clients send it."""
+    """A parameter that is to be sampled from a uniform distribution, as newer clients send it."""
     message = OutgoingMessage()
     message.write_string(name)
     for number in (1, 7, 0):

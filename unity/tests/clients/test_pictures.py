@@ -1,4 +1,4 @@
-"""Pictures as PNG files and as floats, and changes of their size."""
+"""Pictures as PNG files and as floats, in sizes that change."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_size_can_change_with_a_step(launcher: Launcher, channels: Channels) -> 
 
 
 def test_pictures_too_large_for_a_message_end_the_session_with_advice(launcher: Launcher, channels: Channels) -> None:
-    client = launcher.meet("--raw-observations", channels=channels.all)
+    client = launcher.start_in_editor_mode("--raw-observations", channels=channels.all)
     client.reset()
     channels.reset.say("reset_environment", world(agent={"observation_size": 400}))
     with pytest.raises(UnityCommunicatorStoppedException):
@@ -65,7 +65,7 @@ def test_pictures_too_large_for_a_message_end_the_session_with_advice(launcher: 
 def test_pictures_that_would_not_fit_at_the_end_of_an_episode_are_refused_at_its_start(
     launcher: Launcher, channels: Channels
 ) -> None:
-    client = launcher.meet("--raw-observations", channels=channels.all)
+    client = launcher.start_in_editor_mode("--raw-observations", channels=channels.all)
     channels.reset.say("reset_environment", world(agent={"observation_size": 250}))
     assert client.reset().now.rgb.shape == (250, 250, 3), "one set of pictures fits"
     channels.reset.say("reset_environment", world(max_steps=2, agent={"observation_size": 250}))

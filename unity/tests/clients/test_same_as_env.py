@@ -45,30 +45,30 @@ OWN = world(
 
 
 def actions() -> Iterator[Floats]:
-    """Five hundred actions: forwards in curves, sometimes backwards or out of range, to meet many objects."""
-    chance = np.random.default_rng(7)
+    """Five hundred actions: forwards in curves, sometimes backwards or out of range, so that the agent touches many objects."""
+    rng = np.random.default_rng(7)
     for step in range(500):
-        action = chance.uniform([-3, -20, 0], [14, 20, 1])
+        action = rng.uniform([-3, -20, 0], [14, 20, 1])
         action[1] += 80 * np.sin(step / 11)
         yield action.astype(np.float32)
 
 
 def converted(original: Path) -> str:
-    """A reset file of L2Explorer, converted to our format by our command."""
+    """A reset file of L2Explorer, converted by the command `driftworld convert`."""
     command = [sys.executable, "-m", "driftworld", "convert", str(original), "--l2explorer"]
     return subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout
 
 
-def shares(levels: npt.NDArray[np.uint8]) -> Floats:
+def to_floats(levels: npt.NDArray[np.uint8]) -> Floats:
     """8-bit levels as the floats that clients return."""
     return levels.astype(np.float32) / np.float32(255)
 
 
 def check(seen: Seen, observation: dict[str, Any]) -> None:
     """Asserts that all four observations are equal, bit for bit."""
-    assert (seen.depth == shares(observation["depth"].repeat(3, axis=2))).all()
-    assert (seen.rgb == shares(observation["rgb"])).all()
-    assert (seen.segmentation == shares(COLORS[observation["segmentation"][..., 0]])).all()
+    assert (seen.depth == to_floats(observation["depth"].repeat(3, axis=2))).all()
+    assert (seen.rgb == to_floats(observation["rgb"])).all()
+    assert (seen.segmentation == to_floats(COLORS[observation["segmentation"][..., 0]])).all()
     assert seen.vector.dtype == np.float32 and (seen.vector[1:] == observation["state"]).all()
 
 
@@ -116,7 +116,7 @@ def test_in_a_world_where_much_happens(launcher: Launcher, channels: Channels) -
     channels.reset.say("reset_environment", OWN)
     episodes, rewards = compare(client, environment(converted(path)))
     assert episodes == 4
-    assert len(rewards) >= 8 and len(set(rewards)) >= 4, "a comparison needs a world where much happens"
+    assert len(rewards) >= 8 and len(set(rewards)) >= 4, "the world must have many events to compare"
 
 
 @pytest.mark.parametrize("task", ["find_objects#red", "moving_object", "scavenger_hunt"])
@@ -155,7 +155,7 @@ def test_float_depth_equals_the_environments_depth_in_metres(launcher: Launcher,
     for action in list(actions())[:100]:
         white_at_100_m = np.clip(observation["depth"] / np.float32(100), 0, 1)
         assert (seen.depth == white_at_100_m).all() and white_at_100_m.dtype == np.float32
-        assert (seen.rgb == shares(observation["rgb"])).all()
+        assert (seen.rgb == to_floats(observation["rgb"])).all()
         observation, *_ = twin.step(action)
         seen = client.step(action).now
     twin.close()

@@ -1,4 +1,4 @@
-"""Episodes as a client experiences them: the behaviour's spec, observations, rewards, and the end of an episode."""
+"""Episodes from the client's side: the behaviour's spec, observations, rewards, and the end of an episode."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def test_newer_clients_get_the_dimension_properties_of_pictures(launcher: Launch
 
     client = launcher.start()
     client.reset()
-    near, apart = Property.TRANSLATIONAL_EQUIVARIANCE, Property.NONE
-    picture = (apart, near, near) if GENERATION >= (1, 0) else (near, near, apart)
+    equivariant, plain = Property.TRANSLATIONAL_EQUIVARIANCE, Property.NONE
+    picture = (plain, equivariant, equivariant) if GENERATION >= (1, 0) else (equivariant, equivariant, plain)
     specs = client.spec().observation_specs
-    assert [each.dimension_property for each in specs] == [picture] * 3 + [(apart,)]
+    assert [each.dimension_property for each in specs] == [picture] * 3 + [(plain,)]
     assert {each.observation_type for each in specs} == {ObservationType.DEFAULT}
 
 
@@ -61,9 +61,9 @@ def test_the_agent_stays_the_same_for_five_hundred_steps(launcher: Launcher, cha
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world())
     start = client.reset().now
-    chance = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     for _ in range(500):
-        moment = client.step(chance.uniform([-10, -90, 0], [10, 90, 1]))
+        moment = client.step(rng.uniform([-10, -90, 0], [10, 90, 1]))
         assert moment.end is None and moment.now.agent_id == start.agent_id
         assert np.isfinite(moment.now.vector).all() and (abs(moment.now.vector[1:3]) < 20).all()
     assert not moment.now.equals(start)
@@ -89,9 +89,9 @@ def test_a_step_without_an_action_leaves_the_agent_at_rest(launcher: Launcher, c
 
 def test_an_object_that_is_touched_pays_once_for_each_contact(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
-    beside = thing(15, 0)
+    other = thing(15, 0)
     target = thing(0, 4, 7.0, reward_stimulus=["AgentCollide"])
-    channels.reset.say("reset_environment", world(beside, target))
+    channels.reset.say("reset_environment", world(other, target))
     client.reset()
     moments = [client.step(AHEAD).now for _ in range(10)]
     paid = [(moment.reward, int(moment.vector[0])) for moment in moments]
@@ -138,7 +138,7 @@ def test_the_last_step_brings_the_end_and_the_start_of_the_next_episode(launcher
     assert [each and each.agent_id for each in ends] == [None, None, 2, None, None, 3]
 
 
-def test_an_end_by_the_worlds_own_rules_is_not_a_truncation(launcher: Launcher) -> None:
+def test_an_end_by_the_worlds_rules_is_not_a_truncation(launcher: Launcher) -> None:
     target = {"class": "geometric", "coordinates": [0, 3], "reward": 7, "reward_stimulus": ["AgentCollide"]}
     own = {
         "version": 1,
@@ -182,7 +182,7 @@ def test_the_world_of_an_option_is_used_until_a_message_sends_another(launcher: 
     assert client.reset().now.vector[1:3].tolist() == [0, 0]
 
 
-def test_the_agent_moves_by_waypoint_or_on_rails_as_the_world_says(launcher: Launcher, channels: Channels) -> None:
+def test_the_action_model_of_the_world_is_used(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world(agent={"action_model": "bywaypoint"}))
     client.reset()
@@ -192,7 +192,7 @@ def test_the_agent_moves_by_waypoint_or_on_rails_as_the_world_says(launcher: Lau
     target = thing(6, 6, 5.0, reward_stimulus=["AgentInteract"], destroy_stimulus=["AgentInteract"])
     channels.reset.say("reset_environment", world(target, agent={"action_model": "onrails"}))
     client.reset()
-    assert sum(client.step(REST).now.reward for _ in range(60)) == 5, "an agent on rails tours by itself"
+    assert sum(client.step(REST).now.reward for _ in range(60)) == 5, "an agent on rails walks by itself"
     channels.reset.say("reset_environment", world(agent={"action_model": "none"}))
     start = client.reset().now
     assert client.step(AHEAD).now.equals(start)

@@ -1,4 +1,4 @@
-"""Ports where nothing or something other than a client listens; invalid arguments, help and version."""
+"""Ports without a client or with another server; invalid arguments, help and version."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 from clients import Launcher, code_and_errors, free_port
 
 
-def test_without_a_client_the_exit_code_is_3_and_the_advice_names_the_port(launcher: Launcher) -> None:
+def test_missing_client_ends_with_3_and_advice_about_the_port(launcher: Launcher) -> None:
     port = free_port()
     code, errors = code_and_errors(launcher.run("--mlagents-port", str(port), "--wait", "0.5"))
     assert code == 3
@@ -24,7 +24,7 @@ def test_without_a_client_the_exit_code_is_3_and_the_advice_names_the_port(launc
 
 def test_the_default_port_is_the_editor_modes_port(launcher: Launcher) -> None:
     code, errors = code_and_errors(launcher.run("--wait", "0.1"))
-    # Something on this machine may be listening there; then the error names the same port.
+    # Another program may be listening there; the error then names the same port.
     assert code in (1, 3) and "127.0.0.1:5004" in errors
 
 
@@ -36,7 +36,7 @@ def silent() -> Iterator[int]:
 
 @contextmanager
 def talking(answer: bytes) -> Iterator[int]:
-    """A server that sends everyone the same bytes, reads once, and hangs up."""
+    """A server that sends the same bytes on every connection, reads once, and hangs up."""
 
     def serve() -> None:
         while True:

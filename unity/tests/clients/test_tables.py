@@ -1,4 +1,4 @@
-"""Worlds with an action table, and worlds for photographs, which show one photograph per step."""
+"""Worlds with an action table, and worlds for photographs, in which each step shows a photograph."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from worlds import thing, world
 TABLE = [[10, 0, 0], [0, 90, 0], [0, 0, 0]]
 
 
-@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("is_mid_session", [False, True])
 def test_a_table_is_one_choice_among_its_rows(
-    launcher: Launcher, channels: Channels, tmp_path: Path, beside: bool
+    launcher: Launcher, channels: Channels, tmp_path: Path, is_mid_session: bool
 ) -> None:
     own = world(agent={"actions": {"discrete": TABLE}})
-    if beside:
+    if is_mid_session:
         client = launcher.start(channels=channels.all)
         client.reset()
-        assert client.branches() == (), "three numbers before"
+        assert client.branches() == (), "no table yet"
         channels.reset.say("reset_environment", own)
     else:
         path = tmp_path / "own.json"

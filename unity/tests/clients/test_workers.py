@@ -26,16 +26,16 @@ def test_two_workers_at_once_give_the_same_results_as_alone(launcher: Launcher) 
 
     clients: list[Client] = []
     port = free_port(2)
-    lives = [start(number, port)[1] for number in range(2)]
+    histories = [start(number, port)[1] for number in range(2)]
     for step in range(60):
         for number, client in enumerate(clients[:2]):
-            lives[number].append(client.step(action(number, step)).now)
+            histories[number].append(client.step(action(number, step)).now)
     for number in range(2):
         _, alone = start(number, free_port(2))
         alone += [clients[-1].step(action(number, step)).now for step in range(60)]
-        assert all(one.equals(other) for one, other in zip(lives[number], alone))
-        assert {seen.agent_id for seen in lives[number]} == {1}, "each worker counts its own episodes"
-    assert not lives[0][0].equals(lives[1][0])
+        assert all(one.equals(other) for one, other in zip(histories[number], alone))
+        assert {seen.agent_id for seen in histories[number]} == {1}, "each worker counts its own episodes"
+    assert not histories[0][0].equals(histories[1][0])
 
 
 def resident_kib(pid: int) -> int:
@@ -46,13 +46,13 @@ def resident_kib(pid: int) -> int:
 
 def test_a_thousand_resets_use_no_more_memory_than_a_hundred(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
-    chance = np.random.default_rng(1)
+    rng = np.random.default_rng(1)
 
     def resets(count: int) -> int:
         for number in range(count):
             if number % 2:
-                places = chance.uniform(-15, 15, (20, 2))
-                channels.reset.say("reset_environment", world(*(thing(x, y, 1.0) for x, y in places.tolist())))
+                positions = rng.uniform(-15, 15, (20, 2))
+                channels.reset.say("reset_environment", world(*(thing(x, y, 1.0) for x, y in positions.tolist())))
             start = client.reset().now
             assert client.step((5.0, 0.0, 0.0)).now.agent_id == start.agent_id
         channels.reset.take()
@@ -60,5 +60,5 @@ def test_a_thousand_resets_use_no_more_memory_than_a_hundred(launcher: Launcher,
 
     before = resets(100)
     after = resets(1000)
-    # The system's allocator keeps a few hundred KiB more or less from one run to the next.
+    # The allocator's memory varies by a few hundred KiB from run to run.
     assert after - before < 2048, (before, after)

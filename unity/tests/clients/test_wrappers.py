@@ -1,4 +1,4 @@
-"""Runs the executable with ML-Agents' own Gym wrapper, which knows nothing about L2Explorer."""
+"""Runs the executable with ML-Agents' own Gym wrapper, which is not specific to L2Explorer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from channels import Channels
-from clients import PATIENCE_SECS, Launcher
+from clients import TIMEOUT_SECS, Launcher
 from worlds import world
 
 pytest.importorskip("gym", reason="the wrapper needs gym")
@@ -45,4 +45,4 @@ def test_the_wrapper_runs_episodes(launcher: Launcher, channels: Channels, wrapp
         ended = [env.step(env.action_space.sample())[2] for _ in range(5)]
         assert ended == [False] * 4 + [True]
     env.close()
-    assert client.process.wait(PATIENCE_SECS) == 0
+    assert client.process.wait(TIMEOUT_SECS) == 0
