@@ -290,7 +290,10 @@ fn world_of_an_episode_is_named() {
     write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#);
     let sheet = folder.path().join("sheet.png");
     for (name, message) in [
-        ("moving_object", "onrails in moving_object#default, world 0 under seed 0: 2 steps"),
+        (
+            "moving_object",
+            "onrails in moving_object#default, world 0 under seed 0: 2 steps",
+        ),
         (
             "moving_object#fast",
             "onrails in moving_object#fast, world 0 under seed 0: 2 steps",
