@@ -44,7 +44,7 @@ pub(crate) fn gray_rgb(metres: &[f32]) -> Vec<u8> {
     depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
 }
 
-/// A colour for a number, different from those of its neighbours; black for 0.
+/// A colour for a number, unlike the colours of adjacent numbers; black for 0.
 pub fn number_color(number: u32) -> [u8; 3] {
     [97_u32, 53, 151].map(|step| {
         let share = number.wrapping_mul(step) % 192;

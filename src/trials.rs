@@ -57,7 +57,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         let experience = first
             .experience
             .map_or_else(String::new, |experience| format!(", experience {experience}"));
-        let progress = when(first.progress != 0.0, || format!(", at {} of its way", first.progress));
+        let progress = when(first.progress != 0.0, || format!(", at progress {}", first.progress));
         lines.push(format!(
             "{}{experience}, world {}{progress}: {}",
             trial.variant, first.index, first.reason

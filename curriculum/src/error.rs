@@ -79,8 +79,8 @@ pub enum CurriculumError {
     NoWay,
     /// A drift from one task to another.
     #[error(
-        "design: found a drift from {from} to {to}, expected two variants of one task; leave the drift out, or one of \
-         them"
+        "design: found a drift from {from} to {to}, expected two variants of one task; remove the drift, or one \
+         of the two variants"
     )]
     DriftBetweenTasks {
         /// Its first variant.
@@ -114,8 +114,8 @@ pub enum CurriculumError {
     BadProbe(usize),
     /// A search for a sequence of steps reached its limit.
     #[error(
-        "steps from {anchor}: found at most {found} of {} ± {} in {limit} comparisons, expected \
-         {}; ask for fewer or larger steps, or a larger tolerance",
+        "steps from {anchor}: found at most {found} steps of {} ± {} in {limit} comparisons, \
+         expected {}; ask for fewer or larger steps, or a larger tolerance",
         wanted.distance,
         wanted.tolerance,
         wanted.count
@@ -156,7 +156,7 @@ pub enum CurriculumError {
     BadSteps(Steps),
     /// A sequence of steps ends too soon.
     #[error(
-        "steps from {anchor}: found at most {found} of {} ± {}, expected {}; the farthest \
+        "steps from {anchor}: found at most {found} steps of {} ± {}, expected {}; the farthest \
          variant is {farthest:.4} away: ask for fewer or smaller steps, a larger tolerance, or another start",
         wanted.distance,
         wanted.tolerance,
@@ -265,7 +265,7 @@ pub enum CurriculumError {
     /// A variant named for a probe differs in other elements, too.
     #[error(
         "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
-         {element} alone; name others, or the task to have them chosen"
+         {element} alone; name other variants, or the task alone to have them chosen"
     )]
     NotAlone {
         /// The first variant.
@@ -388,7 +388,7 @@ fn and_blocks(blocks: Option<u32>) -> String {
 }
 
 fn at_progress(progress: f64) -> String {
-    when(progress != 0.0, || format!(" at {progress} of its way"))
+    when(progress != 0.0, || format!(" at progress {progress}"))
 }
 
 impl CurriculumError {

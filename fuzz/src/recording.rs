@@ -1,5 +1,5 @@
-//! Law of files of recorded episodes. Input: raw bytes, or edits to the lines of a known file. Edited lines are packed and get valid
-//! checksums, because random bytes seldom have them.
+//! Properties of recorded episodes' files. Input: raw bytes, or edits to the lines of a known file. Edited lines are packed again
+//! with valid checksums, because random bytes rarely have them.
 
 use std::fs;
 use std::io::Write;

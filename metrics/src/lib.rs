@@ -60,10 +60,10 @@ pub use repeats::{
     welch_power,
 };
 pub use results::{
-    AGREEING_PART, AsLogged, BesideExpert, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve,
-    Exchanged, ExpertFit, Headline, LARGEST_P, LEARNED_SHARE, LifetimeMetrics, MetricPower, NullBand, PairValues, Part,
-    Reached, Reading, RegimeMetrics, RepeatedMetric, ScaledBy, Settings, SummaryRow, Value, Values, WholeLifetime,
-    compare_agents, metric_power, over_repeats, regimes_tsv, save_all,
+    AsLogged, BesideExpert, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve, Exchanged,
+    ExpertFit, Headline, LEARNED_SHARE, LifetimeMetrics, MAX_P_VALUE, MIN_AGREEING_SHARE, MetricPower, NullBand,
+    PairValues, Part, Reached, Reading, RegimeMetrics, RepeatedMetric, ScaledBy, Settings, SummaryRow, Value, Values,
+    WholeLifetime, compare_agents, metric_power, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 

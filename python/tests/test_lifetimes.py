@@ -373,7 +373,7 @@ def test_undrawable_worlds_are_found_and_skipped(tmp_path: Path) -> None:
     drift = next(trial for trial in curriculum.try_worlds(2) if trial["variant"].endswith("low..high"))
     assert drift["requirement"] == 3 and drift["failed"][0]["progress"] == 0.45
     log = tmp_path / "log"
-    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at 0\.45 of its way"):
+    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at progress 0\.45"):
         curriculum.run(Circler(), log, modalities="rgb", size=8)
     seen_rewards: list[float] = []
     summary = curriculum.run(

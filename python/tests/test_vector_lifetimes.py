@@ -216,7 +216,7 @@ def test_undrawable_worlds_are_skipped(tmp_path: Path) -> None:
     task.write_text(json.dumps(QUARRY), encoding="utf-8")
     curriculum = Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21, eval_episodes=1, worlds=0)
     options: dict[str, Any] = {"modalities": "rgb", "size": 8}
-    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at 0\.45 of its way"):
+    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at progress 0\.45"):
         curriculum.run_vector(Many(4, Looker), num_envs=4, **options)
     summary = curriculum.run_vector(Many(4, Looker), tmp_path / "vector", num_envs=4, skip_undrawable=True, **options)
     assert summary.finished and summary.skipped == 3 and summary.experiences == 22

@@ -38,7 +38,7 @@ fn broken(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
+fn broken_tasks_are_refused_and_the_message_says_how_to_fix_them() {
     let cases = [
         ("\"param\": \"light\"", "\"param\": \"ligth\""),
         ("\"param\": \"light\"", "\"param\": \"target_color\""),

@@ -197,7 +197,7 @@ fn skipped(summary: &Summary) -> Option<String> {
     }
     let shown = summary.left_out.iter().take(MAX_LISTED).map(|left_out| {
         let progress = when(left_out.progress != 0.0, || {
-            format!(" at {} of its way", left_out.progress)
+            format!(" at progress {}", left_out.progress)
         });
         format!(
             "  block {}, experience {}, {}{progress}: {}",

@@ -9,7 +9,7 @@ use driftworld_text::one_line;
 use rayon::prelude::*;
 
 use super::{Experts, ScoringRequest};
-use crate::{Failure, Warn, argument, log_folders};
+use crate::{Failure, Warn, log_folders};
 
 /// Scoring options, with the logs to compare with.
 pub(crate) struct Setup {
@@ -37,12 +37,9 @@ impl Setup {
         if request.intervals.common_ranges || !others.is_empty() {
             options = with_common_ranges(&both, &experts, options);
         }
-        let sides = [
-            ("the first agent's logs".to_owned(), &logs),
-            (argument("against"), &others),
-        ];
+        let sides = [("the first agent's logs", &logs), ("the second agent's logs", &others)];
         for (side, logs) in sides.into_iter().filter(|_| !others.is_empty()) {
-            several_agents(&side, logs).into_iter().for_each(warn);
+            several_agents(side, logs).into_iter().for_each(warn);
         }
         Ok(Self {
             logs,

@@ -123,7 +123,7 @@ fn sides_of_a_comparison_are_one_agent_each_and_share_no_log() {
     let shown = fail_in(folder.path(), 0, &["metrics", "-R", "mine", "--against", "theirs"]);
     shown.says("warning: the first agent's logs: found several agents, clear, ewc; they are scored as one");
     let shown = fail_in(folder.path(), 0, &["metrics", "-R", "theirs", "--against", "mine"]);
-    shown.says("warning: --against: found several agents, clear, ewc; they are scored as one");
+    shown.says("warning: the second agent's logs: found several agents, clear, ewc; they are scored as one");
     let shown = fail_in(folder.path(), 2, &["metrics", "-R", "theirs", "--against", "theirs/0"]);
     shown.says("error: --against: found a log of the first agent, expected logs of another agent");
 }

@@ -67,7 +67,7 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
         !folder.path().join("s.json").exists(),
         "what could not be run is not written"
     );
-    let way = |number: &str| error.contains(&format!("at {number} of its way"));
+    let way = |number: &str| error.contains(&format!("at progress {number}"));
     assert!(way("0.425"), "the first that is forbidden is named: {error}");
 
     succeed_in(folder.path(), &format!("{design} --worlds 0"));
@@ -77,7 +77,7 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     // The run stops there, says so, and suggests how to continue.
     let run = "run s.json --agent random --output log";
     let error = fail_in(folder.path(), 1, run);
-    error.says("experience 27, quarry#low..high at 0.425 of its way");
+    error.says("experience 27, quarry#low..high at progress 0.425");
     assert!(error.contains("--resume and --skip-undrawable"), "{error}");
     let error = fail_in(folder.path(), 1, &format!("{run} --resume"));
     assert!(error.contains("--skip-undrawable"), "{error}");

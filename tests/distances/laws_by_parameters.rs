@@ -62,7 +62,7 @@ fn rewritten(spec: &Spec, a: &str, b: &str) -> Spec {
         .rev()
         .map(|(name, one)| (name.clone(), one.clone()))
         .collect();
-    other.0["name"] = json!("retold");
+    other.0["name"] = json!("rewritten");
     other.0["variants"] = json!({
         "low": low, "second": spec.set_by(b), "high": high, "first": spec.set_by(a), "none": {}
     });
@@ -81,7 +81,7 @@ proptest! {
         let task = spec.task();
         let measure = measure(&task);
         for (a, b) in pairs(&variants(&task)) {
-            let found = measure.between(a, b).expect("they are of one task");
+            let found = measure.between(a, b).expect("both belong to the same task");
             let expected = by_hand::distance(&spec, a.name(), b.name());
             prop_assert!((found.total - expected.total).abs() < 1e-9, "{found:#?} and {expected:?}");
             for element in Element::ALL {
@@ -96,15 +96,15 @@ proptest! {
     fn distance_depends_on_the_pair_alone(spec in specs(), a in prop::sample::select(NAMES.to_vec()), b in prop::sample::select(NAMES.to_vec())) {
         let (task, other) = (spec.task(), rewritten(&spec, a, b).task());
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).expect("it is declared");
-        let first = measure(&task).between(&named(&task, a), &named(&task, b)).expect("they are of one task");
-        let second = measure(&other).between(&named(&other, "first"), &named(&other, "second")).expect("they are of one task");
+        let first = measure(&task).between(&named(&task, a), &named(&task, b)).expect("both belong to the same task");
+        let second = measure(&other).between(&named(&other, "first"), &named(&other, "second")).expect("both belong to the same task");
         prop_assert!(are_close(&first, &second), "{first:#?} and {second:#?}");
     }
 
     #[test]
     fn full_range_of_a_parameter_is_1(spec in specs()) {
         let task = spec.task();
-        let base = task.variant(DEFAULT_VARIANT).expect("the defaults keep the requirement");
+        let base = task.variant(DEFAULT_VARIANT).expect("the defaults satisfy the requirement");
         let measure = measure(&task);
         for (name, parameter) in spec.0["parameters"].as_object().expect("it is an object") {
             let weight = parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
@@ -115,17 +115,17 @@ proptest! {
                 base.with("end", [(name.clone(), value)]).ok()
             });
             let (Some(low), Some(high)) = (low, high) else { continue };
-            let distance = measure.between(&low, &high).expect("they are of one task").total;
+            let distance = measure.between(&low, &high).expect("both belong to the same task").total;
             let is_beyond_a_half_turn = parameter["type"] == "heading"
                 && parameter["range"][1].as_f64().zip(parameter["range"][0].as_f64()).is_some_and(|(b, a)| b - a > 180.0);
             let is_one_of_many = parameter["choices"].as_array().is_some_and(|choices| choices.len() > 2);
-            let drawn_by = name.ends_with("_a") || name.ends_with("_b");
-            if !(is_beyond_a_half_turn || is_one_of_many || drawn_by) {
+            let is_of_distribution = name.ends_with("_a") || name.ends_with("_b");
+            if !(is_beyond_a_half_turn || is_one_of_many || is_of_distribution) {
                 prop_assert!((distance - weight * element_weight).abs() < 1e-12, "{name}: {distance} at a weight of {weight} and {element_weight}");
             }
         }
         for (a, b) in pairs(&variants(&task)) {
-            let found = measure.between(a, b).expect("they are of one task");
+            let found = measure.between(a, b).expect("both belong to the same task");
             prop_assert!(found.parts.iter().all(|part| part.normalised <= 1.0 + 1e-12), "{found:#?}");
             prop_assert!(found.total <= measure.diameter() * (1.0 + 1e-12));
         }
@@ -143,7 +143,7 @@ proptest! {
                 for end in ends(parameter) {
                     let value = serde_json::from_value(end).expect("it is a value");
                     let moved = variant.with("moved", [(name.clone(), value)]).expect("it is in its range");
-                    let distance = measure.between(&variant, &moved).expect("they are of one task").total;
+                    let distance = measure.between(&variant, &moved).expect("both belong to the same task").total;
                     if variant.reads(name) {
                         let is_same = moved.value(name) == variant.value(name);
                         prop_assert!(is_same || distance > 0.0 || !measure.properties().is_metric(), "{name}");
@@ -159,7 +159,7 @@ proptest! {
     fn declared_laws_hold(spec in specs()) {
         let task = spec.task();
         let (measure, all) = (measure(&task), variants(&task));
-        let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("they are of one task");
+        let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("both belong to the same task");
         let laws = measure.properties();
         for (a, b) in pairs(&all) {
             prop_assert_eq!(d(a, b).total, d(b, a).total);
@@ -183,7 +183,7 @@ proptest! {
         at.sort_unstable();
         let task = spec.task();
         let measure = measure(&task);
-        let base = task.variant(DEFAULT_VARIANT).expect("the defaults keep the requirement");
+        let base = task.variant(DEFAULT_VARIANT).expect("the defaults satisfy the requirement");
         for (name, parameter) in spec.0["parameters"].as_object().expect("it is an object") {
             if parameter["role"] != "variant" || parameter["type"] != "number" {
                 continue;
@@ -194,7 +194,7 @@ proptest! {
                 base.with("moved", [(name.clone(), value)]).ok()
             });
             let [Some(a), Some(b), Some(c)] = &moved else { continue };
-            let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("they are of one task").total;
+            let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("both belong to the same task").total;
             prop_assert!(d(a, b) <= d(a, c) && d(b, c) <= d(a, c), "{name}");
             // Distances add up along a line.
             prop_assert!((d(a, b) + d(b, c) - d(a, c)).abs() < 1e-9, "{name}");
@@ -226,8 +226,8 @@ proptest! {
             let (plain_measure, more_measure) = (measure(&plain), measure(&more));
             for (a, b) in [(0, 1), (1, 2), (0, 3)].map(|(a, b)| (&all_variants[a], &all_variants[b])) {
                 let with = |variant: &Variant| more.variant(variant.name()).expect("it is declared");
-                let before = plain_measure.between(a, b).expect("they are of one task");
-                let after = more_measure.between(&with(a), &with(b)).expect("they are of one task");
+                let before = plain_measure.between(a, b).expect("both belong to the same task");
+                let after = more_measure.between(&with(a), &with(b)).expect("both belong to the same task");
                 prop_assert_eq!(numbers(&before), numbers(&after));
             }
         }

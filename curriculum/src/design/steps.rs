@@ -102,7 +102,7 @@ mod tests {
         let error = search("middle", 0.25, 3, Some(Element::R)).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "steps from t#middle: found at most 2 of 0.25 ± 0.01, expected 3; the farthest variant is 0.5000 away: \
+            "steps from t#middle: found at most 2 steps of 0.25 ± 0.01, expected 3; the farthest variant is 0.5000 away: \
              ask for fewer or smaller steps, a larger tolerance, or another start"
         );
         let path = search("middle", 0.1, 7, None).unwrap();

@@ -315,7 +315,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     let params = reason.map_or_else(|| planned.params(), |reason| columns::skipped_params(planned, reason));
     let describe = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
         let params = Value::Object(Map::clone(params));
-        let drift = when(progress != 0.0, || format!(", {progress} of its way"));
+        let drift = when(progress != 0.0, || format!(", progress {progress}"));
         format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
     };
     let expected = describe(

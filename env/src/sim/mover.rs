@@ -25,7 +25,7 @@ pub(super) struct Mover {
     goals: u64,
 }
 
-/// The information on which a mover bases its decision.
+/// What a mover knows when it decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     /// Its position, in metres.
@@ -82,10 +82,10 @@ impl Mover {
         let max_turn = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
         let heading_deg = (view.heading_deg + turn.clamp(-max_turn, max_turn)).rem_euclid(360.0);
         let mut metres = object.speed as f32 * view.seconds;
-        // Stops at waypoints instead of overshooting; fleeing and hunting have no such end.
+        // Stops at waypoints instead of overshooting; fleeing and hunting have no end point.
         if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
             metres = metres.min(length(wanted));
-            // Slows down while facing elsewhere, so that it does not circle around a waypoint to which it cannot turn in time.
+            // Slows down while facing elsewhere, so that it does not circle around a waypoint towards which it cannot turn in time.
             metres *= libm::cosf((turn - turn.clamp(-max_turn, max_turn)).to_radians()).max(0.0);
         }
         let heading = heading_deg.to_radians();

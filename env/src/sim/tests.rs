@@ -90,7 +90,7 @@ fn max_queries_per_step(world: WorldDraft) -> u64 {
     max
 }
 
-/// Upper bound for a time step with `count` objects of any kind: queries, and sixty physics steps.
+/// Upper bound on the queries of a time step with `count` objects of any kind; the constant covers sixty physics steps.
 fn bound(count: usize) -> u64 {
     let each = (budget::PER_MOVER + budget::PER_RETURN + 4) * count as u64;
     budget::AGENTS + budget::MOVERS + budget::RETURNS + 1_000_000 + each
@@ -100,7 +100,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(8, 24)))]
 
     #[test]
-    fn work_of_any_crowd_stays_within_the_linear_bound(
+    fn work_of_any_crowd_is_at_most_linear(
         first in 0usize..6,
         second in 0usize..6,
         class in prop::sample::select(vec!["cube", "barrel", "ball", "tree"]),

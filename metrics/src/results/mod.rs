@@ -30,7 +30,7 @@ pub use power::{MetricPower, metric_power};
 pub use reached::{EvaluationCell, LEARNED_SHARE, Reached, ScaledBy};
 pub(crate) use reached::{performance_error, reached};
 pub(crate) use reading::disagreements;
-pub use reading::{AGREEING_PART, LARGEST_P, Reading};
+pub use reading::{MAX_P_VALUE, MIN_AGREEING_SHARE, Reading};
 pub(crate) use regime_table::is_regime_column;
 pub use regime_table::{RegimeMetrics, regimes_tsv};
 pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::reading::LARGEST_P;
+use super::reading::MAX_P_VALUE;
 use super::{Direction, Reading};
 use crate::statistics::quantile;
 
@@ -75,7 +75,7 @@ impl NullBand {
     /// The reading by the band alone, for this good direction: good or bad if the value lies outside the band, `p` is at most
     /// 0.05, and it is on that side of no effect by two of its standard errors, if these are known.
     pub fn reading(&self, good: Direction) -> Reading {
-        let is_noise = !self.is_outside() || self.p > LARGEST_P || self.is_within_two_errors(good) == Some(true);
+        let is_noise = !self.is_outside() || self.p > MAX_P_VALUE || self.is_within_two_errors(good) == Some(true);
         if is_noise {
             return Reading::Unclear;
         }

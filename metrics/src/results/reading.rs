@@ -6,11 +6,11 @@ use super::{Direction, NullBand};
 use crate::repeats::Interval;
 
 /// Maximum p-value at which an effect is named.
-pub const LARGEST_P: f64 = 0.05;
+pub const MAX_P_VALUE: f64 = 0.05;
 
 /// Minimum share, by size, of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below
 /// it, the effect is mixed.
-pub const AGREEING_PART: f64 = 0.75;
+pub const MIN_AGREEING_SHARE: f64 = 0.75;
 
 /// The reading of a metric's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,7 +36,7 @@ impl Reading {
     /// The reading of one lifetime's value, from its null band and the values of tasks, or pairs of them, behind it. `None` for
     /// a metric without a neutral value, such as a mean performance.
     ///
-    /// Good and bad as in [`NullBand::reading`]; mixed if less than [`AGREEING_PART`] of the effects in `parts`, by size, is
+    /// Good and bad as in [`NullBand::reading`]; mixed if less than [`MIN_AGREEING_SHARE`] of the effects in `parts`, by size, is
     /// on the value's side.
     ///
     /// ```
@@ -60,7 +60,7 @@ impl Reading {
             .map(f64::abs)
             .sum();
         let all: f64 = effects().map(f64::abs).sum();
-        Some(if agreeing < AGREEING_PART * all {
+        Some(if agreeing < MIN_AGREEING_SHARE * all {
             Self::Mixed
         } else {
             found
@@ -166,7 +166,7 @@ mod tests {
         fn effect_is_named_only_beyond_noise(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
             let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a value of no effect");
             if matches!(found, Reading::Good | Reading::Bad | Reading::Mixed) {
-                prop_assert!(band.is_outside() && band.p <= LARGEST_P);
+                prop_assert!(band.is_outside() && band.p <= MAX_P_VALUE);
                 prop_assert!(band.standard_error.is_none_or(|error| band.value.abs() >= 2.0 * error));
                 prop_assert_eq!(found == Reading::Good && band.value <= 0.0, false);
                 prop_assert_eq!(found == Reading::Bad && band.value >= 0.0, false);

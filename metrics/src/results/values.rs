@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// Values from one trained task to each other task, in order of the later evaluation.
+/// Transfer from one learned task to each other task, in the order of the evaluations that follow.
 pub type PairValues = IndexMap<String, Vec<f64>>;
 
 /// One value of a metric. In JSON it is plain: a number, a list, a list of lists, or an object of lists; an empty list does not
@@ -28,7 +28,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether every number in it is finite. JSON cannot represent others.
+    /// Whether every number in it is finite. JSON cannot represent any other.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Count(_) | Self::Counts(_) => true,

@@ -37,7 +37,7 @@ fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) 
     (mean(&per_experience[begin..]).unwrap_or(0.0), experiences)
 }
 
-/// Both products are below `num` and not negative.
+/// Where the last tenth begins, and its midpoint. The casts are exact: both products lie in `0..num`.
 fn end_in_floating_point(num: usize) -> (usize, usize) {
     let num = num as f64;
     (((1.0 - 0.1) * num) as usize, ((1.0 - 0.1 / 2.0) * num) as usize)
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn end_of_learning_is_its_last_tenth_and_of_an_evaluation_all_of_it() {
+    fn learning_ends_with_its_last_tenth_and_evaluations_count_whole() {
         let check = |num: u32, block_type: BlockType, value: f64, experiences: usize| {
             let values: Vec<f64> = (0..num).map(f64::from).collect();
             for &definitions in Definitions::ALL {

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_metrics::{AGREEING_PART, LARGEST_P, Lifetime, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, ScaledBy};
+use driftworld_metrics::{
+    Lifetime, LifetimeMetrics, MAX_P_VALUE, MIN_AGREEING_SHARE, NULL_PERMUTATIONS, NullBand, ScaledBy,
+};
 use driftworld_text::capitalized;
 use maud::{Markup, html};
 
@@ -117,10 +119,10 @@ fn standard_error(band: Option<NullBand>) -> Option<String> {
 /// The sentence that explains how the words are chosen.
 fn reading_rule() -> String {
     format!(
-        "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by at \
+        "Words like “helps” need a value outside its null band, with p at most {MAX_P_VALUE}, that differs from no effect by at \
          least two standard errors, if these are known. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of \
          pairs of them, by size, are on the value’s side of no effect; “not tested”, that there is no null band.",
-        100.0 * AGREEING_PART
+        100.0 * MIN_AGREEING_SHARE
     )
 }
 

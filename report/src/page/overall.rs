@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use driftworld_metrics::{
-    BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, LifetimeMetrics, RepeatedMetric,
+    BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LifetimeMetrics, MAX_P_VALUE, RepeatedMetric,
 };
 use driftworld_text::short;
 use indexmap::IndexMap;
@@ -76,7 +76,7 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
             @if rows.iter().any(|row| row.null.is_some()) {
                 p.note {
                     "Words like “helps” need an interval without the value of no effect and, for maintenance and transfer, a mean \
-                     over lifetimes outside its null band, with p at most " (LARGEST_P) ". Null band: as for one lifetime, \
+                     over lifetimes outside its null band, with p at most " (MAX_P_VALUE) ". Null band: as for one lifetime, \
                      of all lifetimes together."
                 }
             }

@@ -6,7 +6,7 @@ use driftworld_spec::{MotionModel, Object, Stimulus, Style, Surface};
 const SIGN: &str = "sign";
 
 /// The object with all unread fields at their defaults: its pay if no stimulus triggers it, the range of a stimulus that it
-/// does not have, the speed of a static object, the texture in a world of plain looks, and so on.
+/// does not have, the speed of a static object, the texture in a world with plain looks, and so on.
 pub(super) fn as_read(object: &Object, style: Style) -> Object {
     let plain = Object::new(object.class.as_str(), object.coordinates);
     let mut read = object.clone();

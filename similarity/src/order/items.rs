@@ -90,7 +90,7 @@ impl<'a> Items<'a> {
     }
 }
 
-/// Ranks in order of increasing value. Values are compared in steps of 1e-9 of their span, so that rounding errors break no ties;
+/// Ranks in order of increasing value. Values are compared in steps of 1e-9 of their span, so that rounding errors do not decide ties;
 /// the names decide between equal values.
 pub(super) fn ascending_ranks(values: &[f64]) -> Vec<usize> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -7,7 +7,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
     let first = items.ends.first.unwrap_or(0);
     let distances: Vec<f64> = (0..items.len()).map(|item| items.gap(first, item)).collect();
     let mut ranks = ascending_ranks(&distances);
-    // Other items may be 0 away, too.
+    // Other items may also be at distance 0.
     ranks.retain(|rank| *rank != first);
     ranks.insert(0, first);
     items.with_fixed_ends(ranks)

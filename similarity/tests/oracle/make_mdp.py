@@ -58,16 +58,16 @@ def process(rng, states, actions):
     return rows, rewards
 
 
-def bisimulation(a, b, share):
-    (of_a, pays_a), (of_b, pays_b) = a, b
-    actions = of_a.shape[1]
-    triples = [(s, t, k) for s in range(len(of_a)) for t in range(len(of_b)) for k in range(actions)]
-    transports = Transports([(of_a[s, k], of_b[t, k]) for s, t, k in triples])
-    gaps = (1 - share) * np.array([abs(pays_a[s, k] - pays_b[t, k]) for s, t, k in triples])
-    d = np.zeros((len(of_a), len(of_b)))
+def bisimulation(a, b, discount):
+    (transitions_a, rewards_a), (transitions_b, rewards_b) = a, b
+    actions = transitions_a.shape[1]
+    triples = [(s, t, k) for s in range(len(transitions_a)) for t in range(len(transitions_b)) for k in range(actions)]
+    transports = Transports([(transitions_a[s, k], transitions_b[t, k]) for s, t, k in triples])
+    gaps = (1 - discount) * np.array([abs(rewards_a[s, k] - rewards_b[t, k]) for s, t, k in triples])
+    d = np.zeros((len(transitions_a), len(transitions_b)))
     while True:
-        next_d = (gaps + share * transports.costs(d)).reshape(len(of_a), len(of_b), actions).max(axis=2)
-        error = share / (1 - share) * np.abs(next_d - d).max()
+        next_d = (gaps + discount * transports.costs(d)).reshape(len(transitions_a), len(transitions_b), actions).max(axis=2)
+        error = discount / (1 - discount) * np.abs(next_d - d).max()
         d = next_d
         if error < 2e-11:
             return d
@@ -75,26 +75,26 @@ def bisimulation(a, b, share):
 
 def w1(a, b, unit, counted, ground):
     """The mean, over counted states and actions, of the difference in reward plus the transport distance of successors."""
-    (of_a, pays_a), (of_b, pays_b) = a, b
+    (transitions_a, rewards_a), (transitions_b, rewards_b) = a, b
     distances = [
-        abs(pays_a[s, k] - pays_b[s, k]) / unit + transport(of_a[s, k], of_b[s, k], ground)
-        for s in np.flatnonzero(counted) for k in range(of_a.shape[1])
+        abs(rewards_a[s, k] - rewards_b[s, k]) / unit + transport(transitions_a[s, k], transitions_b[s, k], ground)
+        for s in np.flatnonzero(counted) for k in range(transitions_a.shape[1])
     ]
     return np.mean(distances)
 
 
-def drawn(seed):
+def distances_for_seed(seed):
     """`../mdp.rs` documents the draws and their order."""
     rng = SplitMix64(seed)
-    of_a = 1 + rng.below(6)
-    of_b = of_a if rng.below(2) == 0 else 1 + rng.below(6)
-    actions, share = 1 + rng.below(3), (3 + 2 * rng.below(3)) / 10
-    a, b = process(rng, of_a, actions), process(rng, of_b, actions)
+    num_states_a = 1 + rng.below(6)
+    num_states_b = num_states_a if rng.below(2) == 0 else 1 + rng.below(6)
+    actions, discount = 1 + rng.below(3), (3 + 2 * rng.below(3)) / 10
+    a, b = process(rng, num_states_a, actions), process(rng, num_states_b, actions)
     unit = (1 + rng.below(4)) / 4
-    counted = [rng.below(2) == 1 or state == 0 for state in range(of_a)]
-    found = [bisimulation(a, b, share).mean()]
-    if of_a == of_b:
-        ground = np.abs(np.arange(of_a)[:, None] - np.arange(of_a)[None, :]) / 2
+    counted = [rng.below(2) == 1 or state == 0 for state in range(num_states_a)]
+    found = [bisimulation(a, b, discount).mean()]
+    if num_states_a == num_states_b:
+        ground = np.abs(np.arange(num_states_a)[:, None] - np.arange(num_states_a)[None, :]) / 2
         found.append(w1(a, b, unit, counted, ground))
     return [round(float(value), 11) for value in found]
 
@@ -102,6 +102,6 @@ def drawn(seed):
 if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     with Pool(2) as pool:
-        cases = pool.map(drawn, range(count), chunksize=10)
+        cases = pool.map(distances_for_seed, range(count), chunksize=10)
     document = {"made_by": {"numpy": np.__version__, "scipy": scipy.__version__}, "cases": cases}
     Path(__file__).with_name("mdp.json").write_text(json.dumps(document, separators=(",", ":")) + "\n")

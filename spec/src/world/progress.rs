@@ -1,4 +1,4 @@
-//! [`Progress`]: the state of a running world, with which a saved world continues exactly as if it had not been interrupted.
+//! [`Progress`]: the state of a running world, from which a saved world continues exactly as if it had not been interrupted.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -79,10 +79,10 @@ impl Place for Progress {}
 /// The largest integer that every JSON reader represents exactly: 2⁵³ − 1.
 const MAX_INTEGER: u64 = (1 << 53) - 1;
 
-/// Maximum number of draws of one kind; leaves room for the same number again.
+/// Maximum number of draws of one kind; leaves room for as many again.
 const MAX_DRAWS: u64 = 1 << 31;
 
-/// Maximum number of time steps; leaves room for the same number again.
+/// Maximum number of time steps; leaves room for as many again.
 const MAX_TICKS: u64 = 1 << 52;
 
 /// An event, as reported in the state vector.
@@ -233,7 +233,7 @@ pub struct RailsProgress {
     #[serde(rename = "patience")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub steps_on_target: u32,
-    /// Indices of the targets postponed for later.
+    /// Indices of the targets postponed.
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub given_up: Vec<u32>,
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::metrics::{
-    AGREEING_PART, AsLogged, Direction, Exchanged, Improvement, Interval, LARGEST_P, LifetimeMetrics,
+    AsLogged, Direction, Exchanged, Improvement, Interval, LifetimeMetrics, MAX_P_VALUE, MIN_AGREEING_SHARE,
     NULL_PERMUTATIONS, NullBand, RepeatedMetric, ScaledBy,
 };
 
@@ -90,10 +90,10 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
     };
     format!(
         "Null band: the central 95% of values when {rows} are permuted across evaluations {NULL_PERMUTATIONS} times, as if the \
-         agent never changed. An effect is named outside the band, with p at most {LARGEST_P}, and two standard errors over \
+         agent never changed. An effect is named outside the band, with p at most {MAX_P_VALUE}, and two standard errors over \
          worlds (±) from no effect. mixed: less than {:.0}% of the effects of tasks or pairs point that way. no null: \
          permuting evaluations does not test that metric.",
-        100.0 * AGREEING_PART
+        100.0 * MIN_AGREEING_SHARE
     )
 }
 
@@ -290,7 +290,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
              {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named where the {} \
              of the IQM is beside no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
-             most {LARGEST_P}. no null: permuting evaluations does not test this metric.",
+             most {MAX_P_VALUE}. no null: permuting evaluations does not test this metric.",
             if few { &t } else { share }
         ));
     }

@@ -54,8 +54,7 @@ impl Session {
             let side_channel = SideChannel::from_id(record.id);
             if number >= MAX_MESSAGES {
                 if let Some(SideChannel::L2Explorer(channel)) = side_channel {
-                    let reason =
-                        format!("found more than {MAX_MESSAGES} in one go, expected the others with later steps");
+                    let reason = format!("found more than {MAX_MESSAGES} in one go, expected the rest in later steps");
                     responses.push((channel, Err(reason)));
                 }
                 continue;
@@ -137,7 +136,7 @@ impl Session {
                 let written = if pixels <= MAX_SCREENSHOT_PIXELS {
                     self.draw(&screenshot)
                 } else {
-                    Err("found more pictures than are drawn in one go, expected the others with later steps".to_owned())
+                    Err("found more pictures than are drawn in one go, expected the rest in later steps".to_owned())
                 };
                 if let Ok(path) = &written {
                     self.remarks.make(About::Settings, &format!("screenshot: {path}"));
@@ -191,7 +190,7 @@ fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
     let Some(rest) = left.checked_sub(found) else {
         return Err(format!(
-            "found about {found} values, expected at most {left} of the {MAX_VALUES} in one go; larger worlds are for --world"
+            "found about {found} values, expected at most {left} of the {MAX_VALUES} in one go; load larger worlds with --world"
         ));
     };
     *left = rest;

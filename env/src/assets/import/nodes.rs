@@ -56,7 +56,11 @@ impl Walk<'_, '_> {
         let node = named(&self.root.nodes, index, "node", from)?;
         let place = format!("/nodes/{index}");
         if std::mem::replace(&mut self.seen[index], true) {
-            return Err(refuse(place, "a second parent, or itself below it", "a tree of nodes"));
+            return Err(refuse(
+                place,
+                "a node with two parents, or in a cycle",
+                "a tree of nodes",
+            ));
         }
         if depth > MAX_IMPORT_DEPTH {
             let found = format!("a node {depth} deep");

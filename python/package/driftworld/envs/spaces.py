@@ -12,7 +12,7 @@ from driftworld.envs.options import Options
 
 #: Depth of the sky in metres, the largest depth.
 FAR_DEPTH = 1000.0
-#: Bound of velocities, which are unbounded; a space needs one.
+#: Velocities are unbounded, but a space needs a bound.
 _LARGE = 1e6
 #: Bound of rewards, which are unbounded, too; each part of a reward is at most 1e9.
 _REWARD = 1e12
