@@ -1,4 +1,4 @@
-//! Helpers for polygons on the ground: conversion to `f32`, and point tests.
+//! Helpers for points and polygons on the ground: conversion to `f32`, distances, and point tests.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -6,6 +6,12 @@ use std::ops::{Add, Div, Mul, Sub};
 pub(crate) fn to_f32(corners: &[[f64; 2]]) -> Vec<[f32; 2]> {
     let corners = corners.iter();
     corners.map(|corner| corner.map(|metres| metres as f32)).collect()
+}
+
+/// The distance between two points.
+pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    (dx * dx + dy * dy).sqrt()
 }
 
 /// Whether a point is inside a polygon, by the even-odd rule, or within `margin` metres of one of its edges.

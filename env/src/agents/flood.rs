@@ -1,114 +1,108 @@
-//! Distances from one cell to others, by Dijkstra's algorithm with one bucket per distance, computed only as far as needed.
+//! [`Flood`]: costs of paths from some cells to others, by Dijkstra's algorithm with one bucket per cost, computed only as far as
+//! needed.
 
-use super::occupancy::OccupancyGrid;
+use super::grid::Grid;
 
-/// Cost of a straight and of a diagonal step, in fifths of a cell.
+/// Cost of a straight and of a diagonal step over open ground, in fifths of a cell.
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const DIAGONAL: u32 = 7;
 
-/// Factor on the cost of a step through a blocked cell, so that paths cross blocked cells only if there is no other way.
-pub(super) const BLOCKED: u32 = 40;
+/// Ground that a flood spreads over.
+pub(super) trait Ground {
+    fn grid(&self) -> Grid;
 
-/// More than the largest step cost, so that queued cells are never a full round ahead; a power of two.
-const NUM_BUCKETS: usize = 512;
+    /// The highest cost of a step.
+    fn max_cost(&self) -> u32;
 
-/// Which cell of a flood step decides whether the step counts as blocked: always the one that the walk leaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Charge {
-    /// The flood spreads from the walk's goal: the cell that the flood enters.
-    Entered,
-    /// The flood spreads from the walk's start: the cell that the flood leaves.
-    Left,
+    /// The cost of the step by which the flood spreads from a cell to the one at this offset, `open` on open ground; `None` if no
+    /// step leads there.
+    fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32>;
 }
 
-/// Distances from one cell, in fifths of a cell: final for cells nearer than `next`, upper bounds for the others.
+/// Costs of paths from some cells, in fifths of a cell: final for cells below `next`, upper bounds for the others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flood {
-    distance: Vec<u32>,
-    /// Queued cells by distance, modulo the number of buckets. A cell may also be queued under an outdated distance.
+    cost: Vec<u32>,
+    /// Queued cells by cost, modulo the number of buckets, a power of two. A cell may also be queued under an outdated cost.
     buckets: Vec<Vec<u32>>,
     next: u32,
     num_waiting: usize,
 }
 
 impl Flood {
-    /// Restarts from a cell.
-    pub(super) fn begin(&mut self, occupancy: &OccupancyGrid, start: usize) {
-        let grid = occupancy.grid();
-        self.distance.clear();
-        self.distance.resize(grid.num_cells(), u32::MAX);
-        // Distance 0 cannot be undercut, so the flood never enters the rim or the walls of layouts.
-        grid.rim()
-            .chain(occupancy.sealed())
-            .for_each(|cell| self.distance[cell] = 0);
-        self.buckets.resize_with(NUM_BUCKETS, Vec::new);
+    /// Restarts from these cells.
+    pub(super) fn begin(&mut self, ground: &impl Ground, starts: &[u32]) {
+        self.cost.clear();
+        self.cost.resize(ground.grid().num_cells(), u32::MAX);
+        // More buckets than the highest cost, so that queued cells are never a full round ahead.
+        let num_buckets = (ground.max_cost() as usize + 1).next_power_of_two();
         self.buckets.iter_mut().for_each(Vec::clear);
-        self.distance[start] = 0;
-        self.buckets[0].push(start as u32);
-        (self.next, self.num_waiting) = (0, 1);
+        self.buckets.resize_with(num_buckets, Vec::new);
+        for start in starts {
+            self.cost[*start as usize] = 0;
+        }
+        self.buckets[0].extend(starts);
+        (self.next, self.num_waiting) = (0, starts.len());
     }
 
-    /// The distance of a cell: final, or the shortest so far; `u32::MAX` if there is none yet.
-    pub(super) fn distance(&self, cell: usize) -> u32 {
-        self.distance[cell]
+    /// Keeps the flood out of a cell: cost 0 cannot be undercut.
+    pub(super) fn shut(&mut self, cell: usize) {
+        self.cost[cell] = 0;
     }
 
-    /// Finalises the distances of a cell and of all nearer cells.
-    pub(super) fn reach(&mut self, cell: usize, occupancy: &OccupancyGrid, charge: Charge) -> u32 {
-        while self.distance[cell] >= self.next && self.spread(occupancy, charge, |_| {}).is_some() {}
-        self.distance[cell]
+    /// The cost of a cell: final, or the lowest so far; `u32::MAX` if there is none yet.
+    pub(super) fn cost(&self, cell: usize) -> u32 {
+        self.cost[cell]
     }
 
-    /// Spreads from the nearest queued cells, which it passes to the callback; returns their distance. `None` once the queue is
+    /// Finalises the costs of a cell and of all cheaper cells.
+    pub(super) fn reach(&mut self, ground: &impl Ground, cell: usize) -> u32 {
+        while self.cost[cell] >= self.next && self.spread(ground, |_| {}).is_some() {}
+        self.cost[cell]
+    }
+
+    /// Spreads from the cheapest queued cells, which it passes to the callback; returns their cost. `None` once the queue is
     /// empty.
-    pub(super) fn spread(
-        &mut self,
-        occupancy: &OccupancyGrid,
-        charge: Charge,
-        mut found: impl FnMut(usize),
-    ) -> Option<u32> {
+    pub(super) fn spread(&mut self, ground: &impl Ground, mut found: impl FnMut(usize)) -> Option<u32> {
         if self.num_waiting == 0 {
             return None;
         }
-        let slot = |distance: u32| distance as usize % NUM_BUCKETS;
-        while self.buckets[slot(self.next)].is_empty() {
+        let mask = self.buckets.len() - 1;
+        while self.buckets[self.next as usize & mask].is_empty() {
             self.next += 1;
         }
         let here = self.next;
-        let around = occupancy
+        let around = ground
             .grid()
             .around()
             .map(|(step, is_diagonal)| (step, if is_diagonal { DIAGONAL } else { STRAIGHT }));
-        let mut cells = std::mem::take(&mut self.buckets[slot(here)]);
+        let mut cells = std::mem::take(&mut self.buckets[here as usize & mask]);
         for cell in cells.iter().map(|cell| *cell as usize) {
-            if self.distance[cell] != here {
+            if self.cost[cell] != here {
                 continue;
             }
             found(cell);
-            let factor = if charge == Charge::Left && occupancy.is_blocked(cell) {
-                BLOCKED
-            } else {
-                1
-            };
-            for (step, cost) in around {
+            for (step, open) in around {
                 let other = cell.wrapping_add_signed(step);
-                let known = self.distance[other];
-                // Most neighbours already have a shorter distance.
-                if here + cost >= known {
+                let known = self.cost[other];
+                // Most neighbours already have a lower cost.
+                if here.saturating_add(open) >= known {
                     continue;
                 }
-                let is_costly = charge == Charge::Entered && occupancy.is_blocked(other);
-                let through = here + cost * if is_costly { BLOCKED } else { factor };
+                let Some(cost) = ground.cost(cell, step, open) else {
+                    continue;
+                };
+                let through = here.saturating_add(cost);
                 if through < known {
-                    self.distance[other] = through;
-                    self.buckets[slot(through)].push(other as u32);
+                    self.cost[other] = through;
+                    self.buckets[through as usize & mask].push(other as u32);
                     self.num_waiting += 1;
                 }
             }
         }
         self.num_waiting -= cells.len();
         cells.clear();
-        self.buckets[slot(here)] = cells;
+        self.buckets[here as usize & mask] = cells;
         self.next = here + 1;
         Some(here)
     }

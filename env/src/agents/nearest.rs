@@ -4,8 +4,9 @@ use std::cmp::Reverse;
 
 use driftworld_spec::World;
 
-use super::flood::{BLOCKED, Charge, DIAGONAL, STRAIGHT};
+use super::flood::{DIAGONAL, STRAIGHT};
 use super::marks::Marks;
+use super::occupancy::{BLOCKED, Paths};
 use super::route::Route;
 use crate::scene::Scene;
 
@@ -53,7 +54,7 @@ impl Route {
             }
         }
         let here = self.open_cell(from);
-        self.flood.begin(&self.occupancy, here);
+        self.begin(here);
         // For each goal a lower bound on its distance: the distance at which the flood first reaches the goal's cell or the
         // ground that the goal's own object blocks.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
@@ -62,7 +63,7 @@ impl Route {
         let mut seen = Vec::new();
         loop {
             let marks = &self.marks;
-            let spread = self.flood.spread(&self.occupancy, Charge::Left, |cell| {
+            let spread = self.flood.spread(&Paths::From(&self.occupancy), |cell| {
                 marks.of(cell, |number| seen.push(number));
             });
             let Some(distance) = spread else { break };
@@ -130,7 +131,7 @@ impl Route {
         let grid = occupancy.grid();
         let start = grid.cell_at(goal.place);
         let Some(own) = occupancy.disc(goal.object) else {
-            return flood.distance(start);
+            return flood.cost(start);
         };
         let Marks {
             back,
@@ -142,7 +143,7 @@ impl Route {
         let mut best = if occupancy.is_closed(start) {
             u32::MAX
         } else {
-            flood.distance(start)
+            flood.cost(start)
         };
         open.clear();
         open.push(Reverse((0, start)));
@@ -174,7 +175,7 @@ impl Route {
                     }
                     back[other] = through;
                     open.push(Reverse((through, other)));
-                    best = best.min(through.saturating_add(flood.distance(other)));
+                    best = best.min(through.saturating_add(flood.cost(other)));
                 }
             }
         }
@@ -348,7 +349,7 @@ mod tests {
                     // Queries near and far, so that the flood has to grow.
                     for from in [goal.place.map(|metres| metres * 0.5), from, [12.0, -12.0]] {
                         let cell = route.occupancy.grid().cell_at(from);
-                        let found = route.flood.reach(cell, &route.occupancy, Charge::Entered);
+                        let found = route.reach(cell);
                         let (found, expected) = (f64::from(route.metres(found)), slow.metres(from));
                         prop_assert!((found - expected).abs() <= 1e-4 * expected, "{} for {}", found, expected);
                     }

@@ -2,10 +2,14 @@
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
+use super::flood::{DIAGONAL, Ground};
 use super::grid::Grid;
 use crate::ground;
-use crate::polygon::is_near_or_inside;
+use crate::polygon::{is_near_or_inside, to_f32};
 use crate::scene::Scene;
+
+/// Factor on the cost of a step through a blocked cell, so that paths cross blocked cells only if there is no other way.
+pub(super) const BLOCKED: u32 = 40;
 
 /// Clearance of paths from walls and objects, in metres in addition to half the agent's width.
 const CLEARANCE: f32 = 0.15;
@@ -33,6 +37,33 @@ pub(super) struct OccupancyGrid {
     sealed: Vec<bool>,
     /// The avoided objects, in ascending order of index.
     discs: Vec<Disc>,
+}
+
+/// The ground for a flood. It charges for the blocked cells that a walk leaves.
+pub(super) enum Paths<'a> {
+    /// Floods from the end of walks, which leave the cells that the flood enters.
+    To(&'a OccupancyGrid),
+    /// Floods from the start of walks.
+    From(&'a OccupancyGrid),
+}
+
+impl Ground for Paths<'_> {
+    fn grid(&self) -> Grid {
+        let (Self::To(occupancy) | Self::From(occupancy)) = self;
+        occupancy.grid
+    }
+
+    fn max_cost(&self) -> u32 {
+        BLOCKED * DIAGONAL
+    }
+
+    fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
+        let is_blocked = match self {
+            Self::To(occupancy) => occupancy.is_blocked(from.wrapping_add_signed(step)),
+            Self::From(occupancy) => occupancy.is_blocked(from),
+        };
+        Some(open * if is_blocked { BLOCKED } else { 1 })
+    }
 }
 
 /// The obstacles other than objects.
@@ -112,9 +143,10 @@ impl OccupancyGrid {
         self.grid.is_rim(cell) || self.sealed.get(cell).is_some_and(|sealed| *sealed)
     }
 
-    /// The cells of walls of a layout, and of zones that fail.
-    pub(super) fn sealed(&self) -> impl Iterator<Item = usize> {
-        (0..self.sealed.len()).filter(|cell| self.sealed[*cell])
+    /// All cells that no path may cross.
+    pub(super) fn closed(&self) -> impl Iterator<Item = usize> {
+        let sealed = (0..self.sealed.len()).filter(|cell| self.sealed[*cell]);
+        self.grid.rim().chain(sealed)
     }
 
     /// The number of obstacles that block a cell.
@@ -233,30 +265,19 @@ impl OccupancyGrid {
         if world.plan().is_some() || zones().any(fails) {
             self.sealed.resize(grid.num_cells(), false);
         }
-        for corners in world.obstacles() {
-            let near = grid.near_polygon(corners, margin);
-            let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
+        let walls = world.obstacles().map(|corners| (corners.to_vec(), margin, true));
+        let costly = zones().map(|zone| (ground::corners(zone), ZONE_CLEARANCE, fails(zone)));
+        for (corners, margin, is_sealed) in walls.chain(costly) {
+            let near = grid.near_polygon(&corners, margin);
+            let corners = to_f32(&corners);
+            let is_within =
+                |cell: usize, metres: f32| is_near_or_inside(corners.iter().copied(), grid.centre(cell), metres);
             for cell in near {
-                if self.blockers[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
+                if self.blockers[cell] == 0 && is_within(cell, margin) {
                     self.blockers[cell] = 1;
                 }
-                if let Some(sealed) = self.sealed.get_mut(cell) {
-                    *sealed |= is_near_or_inside(corners.clone(), grid.centre(cell), seal);
-                }
-            }
-        }
-        for zone in zones() {
-            let Some([low, high]) = zone.bounds() else { continue };
-            let [low, high] = [(low, -ZONE_CLEARANCE), (high, ZONE_CLEARANCE)]
-                .map(|(place, by)| place.map(|metres| metres as f32 + by));
-            let corners = ground::corners(zone);
-            let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
-            for cell in grid.within(low, high) {
-                if self.blockers[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), ZONE_CLEARANCE) {
-                    self.blockers[cell] = 1;
-                }
-                if fails(zone) && is_near_or_inside(corners.clone(), grid.centre(cell), seal) {
-                    self.sealed[cell] = true;
+                if is_sealed && let Some(sealed) = self.sealed.get_mut(cell) {
+                    *sealed |= is_within(cell, seal);
                 }
             }
         }

@@ -2,10 +2,10 @@
 
 use driftworld_spec::World;
 
-use super::flood::{Charge, Flood, STRAIGHT};
+use super::flood::{Flood, STRAIGHT};
 use super::marks::Marks;
-use super::occupancy::OccupancyGrid;
-use super::steering::distance;
+use super::occupancy::{OccupancyGrid, Paths};
+use crate::polygon::distance;
 use crate::scene::Scene;
 
 /// Paths to one goal at a time, over the free cells of the arena. Keeps the occupancy grid when the goal changes.
@@ -22,7 +22,18 @@ impl Route {
     pub(super) fn lead(&mut self, world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) {
         self.occupancy.block(world, scene, avoided);
         let grid = self.occupancy.grid();
-        self.flood.begin(&self.occupancy, grid.cell_at(goal));
+        self.begin(grid.cell_at(goal));
+    }
+
+    /// Restarts the flood from a cell.
+    pub(super) fn begin(&mut self, start: usize) {
+        self.flood.begin(&Paths::From(&self.occupancy), &[start as u32]);
+        self.occupancy.closed().for_each(|cell| self.flood.shut(cell));
+    }
+
+    /// The cost of the path from a cell to the goal.
+    pub(super) fn reach(&mut self, cell: usize) -> u32 {
+        self.flood.reach(&Paths::To(&self.occupancy), cell)
     }
 
     /// The next point to walk to from a position: a few cells along the path to the goal.
@@ -30,12 +41,12 @@ impl Route {
         let grid = self.occupancy.grid();
         let mut cell = self.open_cell(from);
         // The path uses only nearer cells, whose distances are final now.
-        self.flood.reach(cell, &self.occupancy, Charge::Entered);
+        self.reach(cell);
         for _ in 0..ahead {
             let around = grid.around().map(|(step, _)| cell.wrapping_add_signed(step));
             let inside = around.into_iter().filter(|next| !self.occupancy.is_closed(*next));
-            match inside.min_by_key(|next| self.flood.distance(*next)) {
-                Some(next) if self.flood.distance(next) < self.flood.distance(cell) => cell = next,
+            match inside.min_by_key(|next| self.flood.cost(*next)) {
+                Some(next) if self.flood.cost(next) < self.flood.cost(cell) => cell = next,
                 _ => break,
             }
         }
@@ -45,7 +56,7 @@ impl Route {
     /// Whether the path from a position hardly exceeds the straight-line distance to the goal, `straight` metres.
     pub(super) fn is_straight(&mut self, from: [f32; 2], straight: f32) -> bool {
         let cell = self.open_cell(from);
-        let length = self.flood.reach(cell, &self.occupancy, Charge::Entered);
+        let length = self.reach(cell);
         self.metres(length) <= 1.25 * straight + 2.0 * self.occupancy.grid().side()
     }
 

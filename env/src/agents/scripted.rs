@@ -4,9 +4,10 @@ use driftworld_spec::Object;
 
 use super::route::Route;
 use super::script::{Command, Until, parse};
-use super::steering::{Purpose, Target, distance, in_space};
+use super::steering::{Purpose, avoided, in_space, is_astray, is_in_reach, towards};
 use super::{Agent, OnRailsAgent};
 use crate::EnvError;
+use crate::polygon::distance;
 use crate::sim::{Action, Environment, ObjectState};
 
 /// Maximum number of interactions with an object that does not react.
@@ -55,7 +56,9 @@ pub struct ScriptedAgent {
 /// A walk in progress.
 #[derive(Clone, Debug)]
 struct Walk {
-    target: Target,
+    /// Index of the object, and its position when the path was found.
+    object: u32,
+    goal: [f32; 2],
     /// The object's state when the walk began.
     before: ObjectState,
     /// Number of steps in which the agent has interacted within reach.
@@ -107,11 +110,19 @@ impl ScriptedAgent {
     }
 
     fn go(&mut self, environment: &Environment, name: &str, until: Until) -> Option<[f64; 3]> {
+        let sim = environment.sim();
+        let mut lead = |object: u32| {
+            let goal = sim.objects()[object as usize].position;
+            let avoided = avoided(sim, Some(object as usize));
+            self.route.lead(sim.world, sim.scene(), goal, &avoided);
+            goal
+        };
         if self.walk.is_none() {
             let object = nearest(environment, name)?;
             self.walk = Some(Walk {
-                target: Target::at(object, environment.sim(), &mut self.route),
-                before: environment.objects()[object].clone(),
+                object,
+                goal: lead(object),
+                before: sim.objects()[object as usize].clone(),
                 num_interactions: 0,
             });
         }
@@ -119,22 +130,22 @@ impl ScriptedAgent {
         if walk.is_over(environment, until) {
             return None;
         }
-        if walk.target.is_astray(environment.sim()) {
-            walk.target = Target::at(walk.target.object, environment.sim(), &mut self.route);
+        if is_astray(sim, walk.object, walk.goal) {
+            walk.goal = lead(walk.object);
         }
         let purpose = match until {
             Until::Interacted => Purpose::Interact,
             Until::Touched | Until::Near(_) => Purpose::Touch,
         };
-        let numbers = walk.target.towards(environment.sim(), purpose, &mut self.route);
-        walk.num_interactions += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment.sim()));
+        let numbers = towards(sim, walk.object, purpose, &mut self.route);
+        walk.num_interactions += u32::from(purpose == Purpose::Interact && is_in_reach(sim, walk.object));
         Some(numbers)
     }
 }
 
 impl Walk {
     fn is_over(&self, environment: &Environment, until: Until) -> bool {
-        let index = self.target.object;
+        let index = self.object as usize;
         let current = &environment.objects()[index];
         let has_reacted = |before: &ObjectState| {
             current.present != before.present
@@ -186,7 +197,7 @@ impl Agent for ScriptedAgent {
 }
 
 /// The nearest present object with this tag or unique name.
-fn nearest(environment: &Environment, name: &str) -> Option<usize> {
+fn nearest(environment: &Environment, name: &str) -> Option<u32> {
     let here = environment.agent().position;
     let has_name = |object: &Object| {
         [&object.tag, &object.unique_name]
@@ -202,7 +213,7 @@ fn nearest(environment: &Environment, name: &str) -> Option<usize> {
         .enumerate();
     objects
         .filter(|(_, (object, state))| state.present && has_name(object))
-        .map(|(index, (_, state))| (index, distance(here, state.position)))
+        .map(|(index, (_, state))| (index as u32, distance(here, state.position)))
         .min_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(index, _)| index)
 }

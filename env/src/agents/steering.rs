@@ -3,6 +3,7 @@
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, World, Zone};
 
 use super::route::Route;
+use crate::polygon::distance;
 use crate::sim::{Action, SimRef};
 
 /// Distance in metres within which an agent walks straight at an object, ignoring the path.
@@ -32,55 +33,33 @@ pub(super) enum Purpose {
     Interact,
 }
 
-/// An agent's current destination.
-#[derive(Clone, Debug)]
-pub(super) struct Target {
-    /// Index of the object.
-    pub(super) object: usize,
-    /// Its position when it was chosen.
-    pub(super) goal: [f32; 2],
-    /// Objects that the path avoids.
-    pub(super) avoided: Vec<u32>,
+/// Whether an object has moved so far from its position when it was chosen that the path there is out of date.
+pub(super) fn is_astray(sim: SimRef, object: u32, goal: [f32; 2]) -> bool {
+    let now = sim.objects()[object as usize].position;
+    let far = distance(sim.agent().position, now);
+    far >= NEAR && distance(now, goal) > (ASTRAY * far).max(0.5)
 }
 
-impl Target {
-    /// Targets the object at its current position, and points the route there around everything present now.
-    pub(super) fn at(object: usize, sim: SimRef, route: &mut Route) -> Self {
-        let (world, scene) = (sim.world, sim.scene());
-        let goal = sim.objects()[object].position;
-        let avoided = avoided(sim, Some(object));
-        route.lead(world, scene, goal, &avoided);
-        Self { object, goal, avoided }
-    }
+/// Whether the agent is near enough for an object to react to an interaction.
+pub(super) fn is_in_reach(sim: SimRef, object: u32) -> bool {
+    let bodies = sim.body_radius(object as usize) + sim.world.agent_params.agent_width as f32 / 2.0;
+    distance(sim.agent().position, sim.objects()[object as usize].position) < bodies + 0.5
+}
 
-    /// Whether the object has moved so far that the path is out of date.
-    pub(super) fn is_astray(&self, sim: SimRef) -> bool {
-        let now = sim.objects()[self.object].position;
-        let far = distance(sim.agent().position, now);
-        far >= NEAR && distance(now, self.goal) > (ASTRAY * far).max(0.5)
+/// The next step of the route to an object, as speed, turn rate and interaction.
+pub(super) fn towards(sim: SimRef, object: u32, purpose: Purpose, route: &mut Route) -> [f64; 3] {
+    let goal = sim.objects()[object as usize].position;
+    let [speed, turn, _] = walk(goal, sim, route);
+    if purpose == Purpose::Interact && !interacts_on_the_way(sim) {
+        // Walks there and faces the object before interacting.
+        return match is_in_reach(sim, object) {
+            true if angle_to(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
+            true => [0.0, turn, 0.0],
+            false => [speed, turn, 0.0],
+        };
     }
-
-    /// Whether the agent is near enough for the object to react to an interaction.
-    pub(super) fn is_in_reach(&self, sim: SimRef) -> bool {
-        let bodies = sim.body_radius(self.object) + sim.world.agent_params.agent_width as f32 / 2.0;
-        distance(sim.agent().position, sim.objects()[self.object].position) < bodies + 0.5
-    }
-
-    /// The next step of the route to this target, as speed, turn rate and interaction.
-    pub(super) fn towards(&self, sim: SimRef, purpose: Purpose, route: &mut Route) -> [f64; 3] {
-        let goal = sim.objects()[self.object].position;
-        let [speed, turn, _] = walk(goal, sim, route);
-        if purpose == Purpose::Interact && !interacts_on_the_way(sim) {
-            // Walks there and faces the object before interacting.
-            return match self.is_in_reach(sim) {
-                true if angle_to(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
-                true => [0.0, turn, 0.0],
-                false => [speed, turn, 0.0],
-            };
-        }
-        let interact = purpose == Purpose::Interact && distance(sim.agent().position, goal) < REACH;
-        [speed, turn, if interact { 1.0 } else { 0.0 }]
-    }
+    let interact = purpose == Purpose::Interact && distance(sim.agent().position, goal) < REACH;
+    [speed, turn, if interact { 1.0 } else { 0.0 }]
 }
 
 /// The next step along the route to a position, as speed, turn rate and no interaction.
@@ -123,6 +102,11 @@ pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, max_angle: f32) -
         reach.min(agent.max_linear_speed as f32)
     };
     [f64::from(speed), f64::from(angle_to / seconds), 0.0]
+}
+
+/// A step backwards, at half speed.
+pub(super) fn step_back(sim: SimRef) -> [f64; 3] {
+    [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
 }
 
 /// Angle from the agent's heading to a point, clockwise in degrees, -180 to 180.
@@ -246,9 +230,4 @@ fn waypoint([speed, turn, _]: [f64; 3], sim: SimRef) -> [f64; 3] {
         f64::from(y + libm::cosf(heading) * reach),
         turn,
     ]
-}
-
-pub(super) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
-    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-    (dx * dx + dy * dy).sqrt()
 }

@@ -1,6 +1,8 @@
-//! Chooses the objects that are worth going to.
+//! Chooses the objects and zones that are worth going to.
 
-use driftworld_spec::{Object, Stimulus};
+use std::cmp::Ordering;
+
+use driftworld_spec::{Object, Stimulus, Zone};
 
 use super::steering::fails;
 use crate::sim::SimRef;
@@ -40,4 +42,11 @@ pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
 /// Whether an object pays for this stimulus.
 pub(super) fn reacts_to(object: &Object, stimulus: Stimulus) -> bool {
     object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
+}
+
+/// Compares zones: those that end the episode in success are worth more, then those that pay more.
+pub(super) fn by_worth(a: &Zone, b: &Zone) -> Ordering {
+    let by_end = a.ends.is_some().cmp(&b.ends.is_some());
+    let by_pay = by_end.then(a.reward_per_second.total_cmp(&b.reward_per_second));
+    by_pay.then(a.reward_on_entering.total_cmp(&b.reward_on_entering))
 }

@@ -3,8 +3,8 @@
 use driftworld_spec::{MotionModel, World, Zone};
 
 use super::ground_shape::GroundShape;
-use super::ways::{Delivery, Queue};
-use super::zone_costs::ZoneCosts;
+use super::zone_costs::{COSTS, ZoneCosts};
+use crate::agents::flood::{DIAGONAL, Ground, STRAIGHT};
 use crate::agents::grid::Grid;
 use crate::agents::steering::fails;
 use crate::polygon::is_near_or_inside;
@@ -22,12 +22,11 @@ const PREFERRED_CLEARANCE: f32 = 0.25;
 const DOOR_CLEARANCE: f32 = 0.02;
 const FAILURE_CLEARANCE: f32 = 0.15;
 
-/// Weights of cells: closed, open ground, near walls, near obstacles, near objects that cost.
+/// Weights of cells: closed, open ground, near walls, near obstacles. Near objects that cost: `COSTS`.
 const CLOSED: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
 const BESIDE_OBSTACLE: u16 = 6;
-pub(super) const COSTS: u16 = 20;
 
 /// Maximum distance beyond contact, in metres, at which a position still counts as beside an object.
 const NEAR: f32 = 0.3;
@@ -73,14 +72,25 @@ pub(super) struct Floor {
     pub(super) doors: Vec<ClosedDoor>,
     /// Counts changes, so that plans can tell whether they are out of date.
     pub(super) version: u64,
-    pub(super) field: Vec<u32>,
-    pub(super) open: Queue,
-    /// The version and the target cells of `field`.
-    pub(super) destination: Option<(u64, Vec<u32>)>,
-    /// Whether the checked part of the last path avoids all zones that cost.
-    pub(super) avoids_costs: bool,
-    /// The version and the delivery, if the targets of `field` are cells from which to put a thing down.
-    pub(super) delivery: Option<(u64, Delivery)>,
+    max_cost: u32,
+}
+
+impl Ground for Floor {
+    fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    fn max_cost(&self) -> u32 {
+        self.max_cost
+    }
+
+    // The flood spreads against the walk.
+    fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
+        let other = from.wrapping_add_signed(step);
+        let weight = u32::from(self.weight[other]);
+        let is_walked = weight > 0 && (open == STRAIGHT || self.is_corner_open(from, step));
+        is_walked.then(|| open * weight + self.zone_costs.of(other, from))
+    }
 }
 
 impl Floor {
@@ -115,6 +125,8 @@ impl Floor {
                 }
             }
         }
+        let max_weight = self.weight.iter().copied().max().unwrap_or(OPEN);
+        self.max_cost = DIAGONAL * u32::from(max_weight) + self.zone_costs.max_entry();
         self.number_rooms();
         self.doors = self
             .objects
@@ -179,6 +191,13 @@ impl Floor {
             is_near_or_inside(corners, at, radius)
         };
         !self.regions.iter().any(is_near)
+    }
+
+    /// Whether a diagonal step cuts no corner.
+    pub(super) fn is_corner_open(&self, cell: usize, step: isize) -> bool {
+        let row = self.grid.stride() as isize * step.signum();
+        let column = step - row;
+        self.weight[cell.wrapping_add_signed(row)] > 0 && self.weight[cell.wrapping_add_signed(column)] > 0
     }
 
     fn number_rooms(&mut self) {

@@ -14,14 +14,17 @@ mod subgoal;
 mod ways;
 mod zone_costs;
 
-use driftworld_spec::{MotionModel, Zone};
+use driftworld_spec::{MotionModel, RailsProgress};
 
 use floor::Floor;
 use goals::{Goal, goals};
 use plan::Plan;
 use subgoal::{Act, Subgoal, is_blocked_by_a_thing};
+use ways::Ways;
 
 use crate::agents::shield::Shield;
+use crate::agents::steering::step_back;
+use crate::agents::tiers::by_worth;
 use crate::sim::SimRef;
 
 /// Steps after which a goal that was not reached is postponed.
@@ -36,11 +39,8 @@ const BLOCKED: (u32, u32) = (40, 5);
 /// Chooses and follows goals in one episode.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Planner {
-    /// The object of the current goal.
-    pub(super) target: Option<u32>,
-    pub(super) steps_on_target: u32,
-    pub(super) given_up: Vec<u32>,
     floor: Floor,
+    ways: Ways,
     /// The first subgoal found in this situation.
     known: Option<(Situation, Option<Subgoal>)>,
     /// A situation in which no goal can be reached, and the zone to enter then.
@@ -72,6 +72,7 @@ impl Planner {
     pub(super) fn begin(&mut self) {
         *self = Self {
             floor: std::mem::take(&mut self.floor),
+            ways: std::mem::take(&mut self.ways),
             ..Self::default()
         };
     }
@@ -83,38 +84,39 @@ impl Planner {
 
     /// Which zones the next step must not enter.
     pub(super) fn shield(&self) -> Shield {
-        if self.floor.avoids_costs {
+        if self.ways.avoids_costs {
             Shield::Cost
         } else {
             Shield::Failure
         }
     }
 
-    /// The next action, as speed, turn rate and interaction.
-    pub(super) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
+    /// The next action towards the target or a new one, as speed, turn rate and interaction.
+    pub(super) fn steer(&mut self, sim: SimRef, progress: &mut RailsProgress) -> [f64; 3] {
         self.floor.update(sim);
-        self.floor.avoids_costs = false;
+        self.ways.avoids_costs = false;
         let goals = goals(sim);
         let find = |target: u32| goals.iter().flatten().copied().find(|goal| goal.object() == target);
-        let mut goal = self.target.and_then(find);
+        let mut goal = progress.target.and_then(find);
         let mut subgoal = goal.and_then(|goal| self.first(sim, goal, &goals));
         if subgoal.is_some() && goal.is_some_and(|goal| goals[2].contains(&goal)) && self.can_gather(sim, &goals) {
             subgoal = None;
         }
         let is_waiting = subgoal.is_some_and(|subgoal| subgoal.act == Act::Wait);
-        self.steps_on_target = self.steps_on_target.saturating_add(u32::from(!is_waiting));
-        let budget_exhausted = self.steps_on_target > PATIENCE;
+        let is_on_the_way = progress.target.is_some() && !is_waiting;
+        progress.steps_on_target = progress.steps_on_target.saturating_add(u32::from(is_on_the_way));
+        let budget_exhausted = progress.steps_on_target > PATIENCE;
         if budget_exhausted {
-            self.given_up.extend(self.target);
+            progress.given_up.extend(progress.target);
         }
         if subgoal.is_none() || budget_exhausted {
             if self.is_known_to_be_idle(sim, &goals) {
                 let subgoal = self.idle.as_ref().and_then(|(_, subgoal)| *subgoal);
-                return subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &mut self.floor));
+                return subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &self.floor, &mut self.ways));
             }
-            goal = self.choose(sim, &goals);
-            self.target = goal.map(Goal::object);
-            self.steps_on_target = 0;
+            goal = self.choose(sim, &goals, &mut progress.given_up);
+            progress.target = goal.map(Goal::object);
+            progress.steps_on_target = 0;
             subgoal = goal.and_then(|goal| self.first(sim, goal, &goals));
             if subgoal.is_none() {
                 subgoal = self.subgoal_without_goals(sim, &goals);
@@ -122,19 +124,19 @@ impl Planner {
         }
         let (first, each) = BLOCKED;
         if !is_waiting
-            && self.steps_on_target >= first
-            && self.steps_on_target.is_multiple_of(each)
+            && progress.steps_on_target >= first
+            && progress.steps_on_target.is_multiple_of(each)
             && is_blocked_by_a_thing(sim)
         {
             return [0.0, 0.0, 1.0];
         }
         let (round, more) = STUCK;
-        let back = (more * (1 + self.steps_on_target / round)).min(round / 2);
-        let is_stuck = !is_waiting && self.steps_on_target % round >= round - back;
+        let back = (more * (1 + progress.steps_on_target / round)).min(round / 2);
+        let is_stuck = !is_waiting && progress.steps_on_target % round >= round - back;
         if is_stuck && subgoal.is_some() {
-            return [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0];
+            return step_back(sim);
         }
-        subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &mut self.floor))
+        subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &self.floor, &mut self.ways))
     }
 
     /// Whether this situation is known to be one in which no goal can be reached.
@@ -150,8 +152,7 @@ impl Planner {
         let zones = sim.world.environment_params.zones.iter().enumerate();
         let wanted = zones.filter(|(_, zone)| zone.is_wanted());
         let subgoals = wanted.filter_map(|(index, zone)| Some((zone, plan.as_ref()?.subgoal_to_enter(index, zone)?)));
-        let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
-        let best = subgoals.reduce(|best, other| if value(other.0) > value(best.0) { other } else { best });
+        let best = subgoals.reduce(|best, other| if by_worth(other.0, best.0).is_gt() { other } else { best });
         let subgoal = best.map(|(_, subgoal)| subgoal);
         self.idle = Some((self.situation(sim, None, goals), subgoal));
         subgoal
@@ -175,7 +176,7 @@ impl Planner {
     }
 
     /// The cheapest goal that can be reached, from the first list that has one.
-    fn choose<'a>(&mut self, sim: SimRef, goals: &[Vec<Goal<'a>>; 3]) -> Option<Goal<'a>> {
+    fn choose<'a>(&self, sim: SimRef, goals: &[Vec<Goal<'a>>; 3], given_up: &mut Vec<u32>) -> Option<Goal<'a>> {
         let plan = Plan::new(sim, &self.floor, goals)?;
         let is_possible = |goal: &&Goal| plan.first(**goal).is_some();
         let possible = goals
@@ -183,10 +184,10 @@ impl Planner {
             .map(|list| list.iter().filter(is_possible).copied().collect::<Vec<_>>());
         let mut possible = possible.filter(|list| !list.is_empty());
         let mut list = possible.next()?;
-        if list.iter().all(|goal| self.given_up.contains(&goal.object())) {
-            self.given_up.clear();
+        if list.iter().all(|goal| given_up.contains(&goal.object())) {
+            given_up.clear();
         }
-        list.retain(|goal| !self.given_up.contains(&goal.object()));
+        list.retain(|goal| !given_up.contains(&goal.object()));
         // Fewest doors first, then the straight-line distance divided by the probability that it pays.
         let here = sim.agent().position;
         let cost = |goal: &Goal| {

@@ -5,8 +5,9 @@ use driftworld_spec::Stimulus;
 use super::floor::{Floor, Room};
 use super::goals::{activating_stimulus, can_interact};
 use super::ground_shape::GroundShape;
-use super::ways::{Delivery, is_to_collect};
-use crate::agents::steering::{angle_to, distance, is_narrow, seconds, step_to};
+use super::ways::{Delivery, Ways, is_to_collect};
+use crate::agents::steering::{angle_to, is_narrow, seconds, step_back, step_to};
+use crate::polygon::distance;
 use crate::sim::{SimRef, put_down_place, reacting_object};
 
 /// Maximum angle in degrees between the agent's heading and an object that it faces.
@@ -51,15 +52,15 @@ pub(super) struct Subgoal {
 
 impl Subgoal {
     /// The next action, as speed, turn rate and interaction.
-    pub(super) fn act(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+    pub(super) fn act(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
         match self.act {
-            Act::Bring { thing } => self.bring(sim, floor, thing),
-            Act::Enter => self.enter(sim, floor),
-            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor),
+            Act::Bring { thing } => self.bring(sim, floor, ways, thing),
+            Act::Enter => self.enter(sim, floor, ways),
+            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor, ways),
         }
     }
 
-    fn approach(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+    fn approach(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
         let stimulus = match self.act {
             Act::Use => Some(Stimulus::AgentInteract),
             Act::Activate => activating_stimulus(sim, self.object),
@@ -76,10 +77,10 @@ impl Subgoal {
         // Only the start of a contact counts: back off before touching again.
         let counts = self.act == Act::Touch || stimulus == Some(Stimulus::AgentCollide);
         if counts && sim.state.touches(self.object as usize) {
-            return [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0];
+            return step_back(sim);
         }
-        floor.lead(floor.cells_beside(sim, self.object, self.room));
-        if let Some(point) = floor.next(sim.agent().position) {
+        ways.lead(floor, floor.cells_beside(sim, self.object, self.room));
+        if let Some(point) = ways.next(floor, sim.agent().position) {
             return walk(sim, point, 0.3);
         }
         let at = sim.objects()[self.object as usize].position;
@@ -116,17 +117,18 @@ impl Subgoal {
     }
 
     /// Walks to a zone, and into it.
-    fn enter(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+    fn enter(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
         let zone = &sim.world.environment_params.zones[self.object as usize];
         let cells = floor.cells_in(zone);
-        floor.lead(
+        ways.lead(
+            floor,
             cells
                 .into_iter()
                 .filter(|cell| floor.room[*cell as usize] == self.room)
                 .collect(),
         );
         let here = sim.agent().position;
-        if let Some(point) = floor.next(here) {
+        if let Some(point) = ways.next(floor, here) {
             return walk(sim, point, 0.1);
         }
         if zone.contains(here.map(f64::from)) {
@@ -138,7 +140,7 @@ impl Subgoal {
             .map_or([0.0; 3], |cell| walk(sim, floor.grid.centre(cell), 0.1))
     }
 
-    fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
+    fn bring(self, sim: SimRef, floor: &Floor, ways: &mut Ways, thing: u32) -> [f64; 3] {
         let to = sim.objects()[self.object as usize].position;
         let within = self.within(sim, thing);
         // The thing picked up last is put down first.
@@ -159,8 +161,8 @@ impl Subgoal {
             within,
             carried: sim.state.carried().len(),
         };
-        floor.lead_to_delivery(sim, delivery);
-        let next = floor.next(sim.agent().position);
+        ways.lead_to_delivery(sim, floor, delivery);
+        let next = ways.next(floor, sim.agent().position);
         if let Some((_, place)) = put_down_place(sim)
             && reacting_object(sim, &reached(sim)).is_none()
             && (!is_deliverable

@@ -1,14 +1,9 @@
-//! Shortest paths over the floor: the cost from each cell to the targets, and the next point to walk to.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! [`Ways`]: the way to the current targets, and the next point to walk to.
 
 use super::floor::{BESIDE, Floor, FloorObject, Room, squared};
 use super::ground_shape::GroundShape;
+use crate::agents::flood::Flood;
 use crate::sim::{SimRef, reacting_object};
-
-/// Cells still to be expanded, the cheapest first.
-pub(super) type Queue = BinaryHeap<Reverse<(u32, u32)>>;
 
 /// How far beyond the agent's body and to its sides an interaction reaches, in metres.
 const REACH: f32 = 1.0;
@@ -33,21 +28,86 @@ pub(super) struct Delivery {
     pub(super) carried: usize,
 }
 
-impl Floor {
+/// The way to the cells that are the current targets.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ways {
+    flood: Flood,
+    /// The floor's version and the target cells.
+    destination: Option<(u64, Vec<u32>)>,
+    /// The floor's version and the delivery, if the targets are cells from which to put a thing down.
+    delivery: Option<(u64, Delivery)>,
+    /// Whether the checked part of the last path avoids all zones that cost.
+    pub(super) avoids_costs: bool,
+}
+
+impl Ways {
     /// Leads to the cells from which an agent that faces the object can put the thing down near it.
-    pub(super) fn lead_to_delivery(&mut self, sim: SimRef, delivery: Delivery) {
-        if self.delivery == Some((self.version, delivery)) {
+    pub(super) fn lead_to_delivery(&mut self, sim: SimRef, floor: &Floor, delivery: Delivery) {
+        if self.delivery == Some((floor.version, delivery)) {
             return;
         }
         // Tries a generous margin first, since the agent may stand anywhere in a cell.
         let mut goals = [0.15, 0.03]
             .into_iter()
-            .map(|margin| self.cells_to_deliver_from(sim, delivery, margin));
+            .map(|margin| floor.cells_to_deliver_from(sim, delivery, margin));
         let goals = goals.find(|goals| !goals.is_empty()).unwrap_or_default();
-        self.lead(goals);
-        self.delivery = Some((self.version, delivery));
+        self.lead(floor, goals);
+        self.delivery = Some((floor.version, delivery));
     }
 
+    /// Sets the target cells of paths.
+    pub(super) fn lead(&mut self, floor: &Floor, targets: Vec<u32>) {
+        let is_same = |(version, old): &(u64, Vec<u32>)| *version == floor.version && *old == targets;
+        if self.destination.as_ref().is_some_and(is_same) {
+            return;
+        }
+        self.flood.begin(floor, &targets);
+        self.delivery = None;
+        self.destination = Some((floor.version, targets));
+    }
+
+    /// The next point to walk to: the farthest point on the path that can be reached in a straight line. `None` at a target,
+    /// and if there is no path.
+    pub(super) fn next(&mut self, floor: &Floor, from: [f32; 2]) -> Option<[f32; 2]> {
+        let start = floor.cell_near(from)?;
+        if matches!(self.flood.reach(floor, start), 0 | u32::MAX) {
+            return None;
+        }
+        let (mut cell, mut best) = (start, floor.grid.centre(start));
+        self.avoids_costs = true;
+        let mut beside = None;
+        for _ in 0..15 {
+            let around = floor.grid.around().into_iter();
+            let open = around.filter(|(step, is_diagonal)| !is_diagonal || floor.is_corner_open(cell, *step));
+            let nearest = open
+                .map(|(step, _)| cell.wrapping_add_signed(step))
+                .min_by_key(|other| {
+                    self.flood
+                        .cost(*other)
+                        .saturating_add(floor.zone_costs.of(cell, *other))
+                });
+            let Some(nearest) = nearest.filter(|other| self.flood.cost(*other) < self.flood.cost(cell)) else {
+                break;
+            };
+            cell = nearest;
+            self.avoids_costs &= !floor.zone_costs.is_in_costly_zone(cell);
+            beside.get_or_insert(nearest);
+            if floor.is_clear(from, floor.grid.centre(cell)) {
+                best = floor.grid.centre(cell);
+            } else if best != floor.grid.centre(start) {
+                break;
+            }
+        }
+        // Straight walks onto costlier ground, such as a zone to enter, do not count as clear, so the agent walks cell by cell
+        // there.
+        if best == floor.grid.centre(start) && floor.grid.cell_at(from) == start {
+            best = beside.map_or(best, |cell| floor.grid.centre(cell));
+        }
+        Some(best)
+    }
+}
+
+impl Floor {
     fn cells_to_deliver_from(&self, sim: SimRef, delivery: Delivery, margin: f32) -> Vec<u32> {
         let Delivery {
             to,
@@ -90,95 +150,6 @@ impl Floor {
             .filter(|cell| self.room[*cell] == room && is_free(cell))
             .map(|cell| cell as u32)
             .collect()
-    }
-
-    /// Sets the target cells of paths.
-    pub(super) fn lead(&mut self, goals: Vec<u32>) {
-        if self
-            .destination
-            .as_ref()
-            .is_some_and(|(version, old)| *version == self.version && *old == goals)
-        {
-            return;
-        }
-        self.field.clear();
-        self.field.resize(self.weight.len(), u32::MAX);
-        self.open.clear();
-        for cell in &goals {
-            self.field[*cell as usize] = 0;
-            self.open.push(Reverse((0, *cell)));
-        }
-        self.delivery = None;
-        self.destination = Some((self.version, goals));
-    }
-
-    /// Expands cells only until the cost from this cell is known.
-    fn reach(&mut self, goal: usize) {
-        while let Some(Reverse((here, cell))) = self.open.peek().copied()
-            && here <= self.field[goal]
-        {
-            self.open.pop();
-            let cell = cell as usize;
-            if here > self.field[cell] {
-                continue;
-            }
-            for (step, is_diagonal) in self.grid.around() {
-                let other = cell.wrapping_add_signed(step);
-                if self.weight[other] == 0 || is_diagonal && !self.is_corner_open(cell, step) {
-                    continue;
-                }
-                let ground = u32::from(self.weight[other]) * if is_diagonal { 7 } else { 5 };
-                let through = here.saturating_add(ground + self.zone_costs.of(other, cell));
-                if through < self.field[other] {
-                    self.field[other] = through;
-                    self.open.push(Reverse((through, other as u32)));
-                }
-            }
-        }
-    }
-
-    /// Whether a diagonal step cuts no corner.
-    fn is_corner_open(&self, cell: usize, step: isize) -> bool {
-        let row = self.grid.stride() as isize * step.signum();
-        let column = step - row;
-        self.weight[cell.wrapping_add_signed(row)] > 0 && self.weight[cell.wrapping_add_signed(column)] > 0
-    }
-
-    /// The next point to walk to: the farthest point on the path that can be reached in a straight line. `None` at a target,
-    /// and if there is no path.
-    pub(super) fn next(&mut self, from: [f32; 2]) -> Option<[f32; 2]> {
-        let start = self.cell_near(from)?;
-        self.reach(start);
-        if self.field[start] == 0 || self.field[start] == u32::MAX {
-            return None;
-        }
-        let (mut cell, mut best) = (start, self.grid.centre(start));
-        self.avoids_costs = true;
-        let mut beside = None;
-        for _ in 0..15 {
-            let around = self.grid.around().into_iter();
-            let open = around.filter(|(step, is_diagonal)| !is_diagonal || self.is_corner_open(cell, *step));
-            let nearest = open
-                .map(|(step, _)| cell.wrapping_add_signed(step))
-                .min_by_key(|other| self.field[*other].saturating_add(self.zone_costs.of(cell, *other)));
-            let Some(nearest) = nearest.filter(|other| self.field[*other] < self.field[cell]) else {
-                break;
-            };
-            cell = nearest;
-            self.avoids_costs &= !self.zone_costs.is_in_costly_zone(cell);
-            beside.get_or_insert(nearest);
-            if self.is_clear(from, self.grid.centre(cell)) {
-                best = self.grid.centre(cell);
-            } else if best != self.grid.centre(start) {
-                break;
-            }
-        }
-        // Straight walks onto costlier ground, such as a zone to enter, do not count as clear, so the agent walks cell by cell
-        // there.
-        if best == self.grid.centre(start) && self.grid.cell_at(from) == start {
-            best = beside.map_or(best, |cell| self.grid.centre(cell));
-        }
-        Some(best)
     }
 
     /// Whether a straight walk is clear; its start may be beside an obstacle.

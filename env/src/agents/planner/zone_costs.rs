@@ -2,10 +2,12 @@
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
-use super::floor::COSTS;
 use crate::agents::grid::Grid;
 use crate::ground;
 use crate::polygon::{is_near_or_inside, to_f32};
+
+/// Weight of cells near objects that cost, and factor on the weights of cells in zones that are traps.
+pub(super) const COSTS: u16 = 20;
 
 /// Distance in metres that paths preferably keep from zones that cost or fail, and the factor on the weights of nearer cells.
 const PREFERRED_CLEARANCE: f32 = 0.35;
@@ -99,6 +101,11 @@ impl ZoneCosts {
             (Some(from), Some(to)) => to.saturating_sub(*from),
             _ => 0,
         }
+    }
+
+    /// The highest cost of entering a cell.
+    pub(super) fn max_entry(&self) -> u32 {
+        self.entering.iter().copied().max().unwrap_or(0)
     }
 
     /// Whether a cell is in a zone that costs.

@@ -1,17 +1,17 @@
 //! [`OnRailsAgent`] knows the map and visits whatever pays: a practical ceiling for learners. It also steers worlds on rails.
 
-mod agent;
+use driftworld_spec::{Object, RailsProgress, Stimulus, World};
 
-use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
-
+use super::Agent;
 use super::nearest::Goal;
 use super::planner::Planner;
 use super::route::Route;
-use super::steering::{Purpose, Target, avoided, distance, walk};
-use super::tiers::{reacts_to, tiers, wanted};
+use super::steering::{Purpose, avoided, is_astray, step_back, towards, walk};
+use super::tiers::{by_worth, reacts_to, tiers, wanted};
 use crate::ground;
+use crate::polygon::distance;
 use crate::scene::Scene;
-use crate::sim::SimRef;
+use crate::sim::{Action, Environment, SimRef};
 
 /// Steps after which an unreached target is postponed.
 const PATIENCE: u32 = 150;
@@ -28,9 +28,8 @@ const RESPAWN_CLEARANCE: f32 = 1.5;
 /// Reads the world's state, not its images.
 #[derive(Clone, Debug, Default)]
 pub struct OnRailsAgent {
-    target: Option<Target>,
-    steps_on_target: u32,
-    given_up: Vec<usize>,
+    /// The target and the path to it, and the targets given up.
+    progress: RailsProgress,
     /// Where the route leads while the only target is a zone.
     zone_goal: Option<[f32; 2]>,
     /// Leads to the target. Boxed because agents are moved often and this is large.
@@ -47,57 +46,23 @@ impl OnRailsAgent {
 
     /// Its plan, for a snapshot.
     pub(crate) fn progress(&self) -> RailsProgress {
-        let target = self.target.as_ref();
-        let planner = &self.planner;
-        if planner.target.is_some() || !planner.given_up.is_empty() {
-            return RailsProgress {
-                target: planner.target,
-                steps_on_target: planner.steps_on_target,
-                given_up: planner.given_up.clone(),
-                ..RailsProgress::default()
-            };
-        }
-        RailsProgress {
-            target: target.map(|target| target.object as u32),
-            goal: target.map_or([0.0; 2], |target| target.goal.map(f64::from)),
-            avoided: target.map_or_else(Vec::new, |target| target.avoided.clone()),
-            steps_on_target: self.steps_on_target,
-            given_up: self.given_up.iter().map(|index| *index as u32).collect(),
-        }
+        self.progress.clone()
     }
 
     /// Resumes from a snapshot; ignores objects that the world does not have.
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
+        let mut agent = Self::new();
         let known = |index: &u32| (*index as usize) < world.objects.len();
-        if world.objects.iter().any(Object::is_used) {
-            let mut planner = Box::<Planner>::default();
-            planner.target = progress.target.filter(known);
-            planner.steps_on_target = progress.steps_on_target;
-            planner.given_up = progress.given_up.iter().copied().filter(known).collect();
-            return Self {
-                planner,
-                ..Self::default()
-            };
-        }
-        let mut route = Box::<Route>::default();
-        let target = progress.target.filter(known).map(|object| {
+        agent.progress.steps_on_target = progress.steps_on_target;
+        agent.progress.given_up = progress.given_up.iter().copied().filter(known).collect();
+        agent.progress.target = progress.target.filter(known);
+        if agent.progress.target.is_some() && !world.objects.iter().any(Object::is_used) {
+            agent.progress.goal = progress.goal;
+            agent.progress.avoided = progress.avoided.iter().copied().filter(known).collect();
             let goal = progress.goal.map(|metres| metres as f32);
-            let avoided: Vec<u32> = progress.avoided.iter().copied().filter(known).collect();
-            route.lead(world, scene, goal, &avoided);
-            Target {
-                object: object as usize,
-                goal,
-                avoided,
-            }
-        });
-        Self {
-            target,
-            steps_on_target: progress.steps_on_target,
-            given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
-            zone_goal: None,
-            route,
-            planner: Box::default(),
+            agent.route.lead(world, scene, goal, &agent.progress.avoided);
         }
+        agent
     }
 
     /// Whether nothing is left that is worth going to.
@@ -112,23 +77,40 @@ impl OnRailsAgent {
         let tiers = tiers(sim);
         let given_up = self.given_up_of(sim);
         if tiers.iter().flatten().all(|index| given_up.contains(*index)) {
-            self.given_up.clear();
+            self.progress.given_up.clear();
         }
-        (self.target, self.steps_on_target) = (None, 0);
-        for mut wanted in tiers {
-            self.target = self.nearest(sim, &wanted);
-            if self.target.is_some() {
+        self.progress.steps_on_target = 0;
+        self.drop_target();
+        for wanted in tiers {
+            if let Some(nearest) = self.nearest(sim, &wanted) {
+                self.aim_at(nearest, sim);
                 return;
             }
             // None of these objects can be reached.
             let given_up = self.given_up_of(sim);
-            wanted.retain(|index| !given_up.contains(*index));
-            self.given_up.append(&mut wanted);
+            let unreached = wanted.into_iter().filter(|index| !given_up.contains(*index));
+            self.progress.given_up.extend(unreached.map(|index| index as u32));
         }
     }
 
+    /// Targets the object at its current position, and points the route there around everything present now.
+    fn aim_at(&mut self, object: u32, sim: SimRef) {
+        let goal = sim.objects()[object as usize].position;
+        let progress = &mut self.progress;
+        progress.target = Some(object);
+        progress.goal = goal.map(f64::from);
+        progress.avoided = avoided(sim, Some(object as usize));
+        self.route.lead(sim.world, sim.scene(), goal, &progress.avoided);
+    }
+
+    fn drop_target(&mut self) {
+        self.progress.target = None;
+        self.progress.goal = [0.0; 2];
+        self.progress.avoided.clear();
+    }
+
     /// The nearest of these objects that was not given up; `None` if none can be reached.
-    fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<Target> {
+    fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<u32> {
         let here = sim.agent().position;
         let given_up = self.given_up_of(sim);
         let (world, scene) = (sim.world, sim.scene());
@@ -146,17 +128,17 @@ impl OnRailsAgent {
             return None;
         }
         let nearest = self.route.nearest(world, scene, here, &goals, &avoided(sim, None));
-        nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route))
+        nearest.map(|number| goals[number].object)
     }
 
     fn given_up_of(&self, sim: SimRef) -> GivenUp {
         let mut given_up = Vec::new();
-        if !self.given_up.is_empty() {
+        if !self.progress.given_up.is_empty() {
             given_up.resize(sim.objects().len(), false);
         }
         // Ignores indices beyond the world's objects.
-        for index in &self.given_up {
-            if let Some(given_up) = given_up.get_mut(*index) {
+        for index in &self.progress.given_up {
+            if let Some(given_up) = given_up.get_mut(*index as usize) {
                 *given_up = true;
             }
         }
@@ -164,7 +146,7 @@ impl OnRailsAgent {
     }
 
     fn towards(&mut self, sim: SimRef) -> [f64; 3] {
-        let Some(target) = &self.target else {
+        let Some(target) = self.progress.target else {
             if let Some(step) = self.towards_zone(sim) {
                 return step;
             }
@@ -174,15 +156,15 @@ impl OnRailsAgent {
                 [0.0; 3]
             };
         };
-        let object = &sim.world.objects[target.object];
+        let object = &sim.world.objects[target as usize];
         if reacts_to(object, Stimulus::AgentInteract) {
-            return target.towards(sim, Purpose::Interact, &mut self.route);
+            return towards(sim, target, Purpose::Interact, &mut self.route);
         }
         // Contacts count when they begin, so it backs up before touching the object again.
-        if sim.state.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
+        if sim.state.touches(target as usize) && reacts_to(object, Stimulus::AgentCollide) {
             return step_back(sim);
         }
-        target.towards(sim, Purpose::Touch, &mut self.route)
+        towards(sim, target, Purpose::Touch, &mut self.route)
     }
 
     /// The next step towards the best zone, zero once the agent is in it; `None` if there is no such zone.
@@ -191,12 +173,9 @@ impl OnRailsAgent {
         let zones = sim.world.environment_params.zones.iter();
         let wanted = zones.filter(|zone| zone.is_wanted());
         let goals = wanted.filter_map(|zone| Some((zone, ground::middle(zone)?.map(|metres| metres as f32))));
-        // Zones that end the episode in success come first, then those that pay most; ties go to the nearest.
-        let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
+        // Ties go to the nearest.
         let (zone, goal) = goals.max_by(|(a, to_a), (b, to_b)| {
-            let (a, b) = (value(a), value(b));
-            let pay = a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2));
-            pay.then(distance(here, *to_b).total_cmp(&distance(here, *to_a)))
+            by_worth(a, b).then(distance(here, *to_b).total_cmp(&distance(here, *to_a)))
         })?;
         if zone.contains(here.map(f64::from)) {
             return Some([0.0; 3]);
@@ -211,7 +190,7 @@ impl OnRailsAgent {
     /// Its next step as speed, turn rate and interaction, independent of the world's action space.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         let step = if sim.state.has_things {
-            self.planner.steer(sim)
+            self.planner.steer(sim, &mut self.progress)
         } else {
             self.tour(sim)
         };
@@ -219,32 +198,53 @@ impl OnRailsAgent {
     }
 
     fn tour(&mut self, sim: SimRef) -> [f64; 3] {
-        self.steps_on_target = self.steps_on_target.saturating_add(1);
+        let steps = self.progress.steps_on_target.saturating_add(1);
+        self.progress.steps_on_target = steps;
+        let target = self.progress.target;
         let given_up = self.given_up_of(sim);
         let wanted = given_up.tier(tiers(sim));
-        let stale = self
-            .target
-            .as_ref()
-            .is_none_or(|target| !wanted.contains(&target.object));
-        if !stale && self.steps_on_target > PATIENCE {
-            self.given_up.extend(self.target.as_ref().map(|target| target.object));
+        let stale = target.is_none_or(|target| !wanted.contains(&(target as usize)));
+        if !stale && steps > PATIENCE {
+            self.progress.given_up.extend(target);
         }
         // If nothing can be reached, it checks again from time to time.
-        let is_waiting = self.target.is_none()
-            && self.steps_on_target < RECHECK_INTERVAL
-            && wanted.iter().all(|index| given_up.contains(*index));
+        let is_waiting =
+            target.is_none() && steps < RECHECK_INTERVAL && wanted.iter().all(|index| given_up.contains(*index));
         if wanted.is_empty() {
-            self.target = None;
-        } else if (stale || self.steps_on_target > PATIENCE) && !is_waiting {
+            self.drop_target();
+        } else if (stale || steps > PATIENCE) && !is_waiting {
             self.choose(sim);
         }
-        if self.target.is_some() {
+        if let Some(target) = self.progress.target {
             self.zone_goal = None;
-        }
-        if let Some(target) = self.target.as_mut().filter(|target| target.is_astray(sim)) {
-            *target = Target::at(target.object, sim, &mut self.route);
+            if is_astray(sim, target, self.progress.goal.map(|metres| metres as f32)) {
+                self.aim_at(target, sim);
+            }
         }
         self.towards(sim)
+    }
+}
+
+impl Agent for OnRailsAgent {
+    fn act(&mut self, environment: &Environment) -> Action {
+        let sim = environment.sim();
+        let step = self.steer(sim);
+        self.planner.shield().in_space(step, sim)
+    }
+
+    // Keeps the route and the planner's floor: they are checked before they are used.
+    fn begin(&mut self, _seed: u64) {
+        self.progress = RailsProgress::default();
+        self.zone_goal = None;
+        self.planner.begin();
+    }
+
+    fn learns(&self) -> bool {
+        false
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
     }
 }
 
@@ -276,8 +276,4 @@ fn blocks_a_respawn(sim: SimRef) -> bool {
         let start = object.coordinates.map(|metres| metres as f32);
         distance(here, start) < RESPAWN_CLEARANCE + sim.body_radius(index)
     })
-}
-
-fn step_back(sim: SimRef) -> [f64; 3] {
-    [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
 }
