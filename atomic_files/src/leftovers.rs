@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 /// File name suffix of unfinished files.
 pub(crate) const ENDING: &str = ".driftworld-part";
 
-/// Attempts to create a file or folder: another process may remove it as a leftover before it is locked.
+/// Maximum number of attempts to create a file or folder: another process may remove it as a leftover before it is locked.
 pub(crate) const TRIES: u32 = 8;
 
 /// Maximum number of folders remembered as already searched.
@@ -20,8 +20,8 @@ pub fn is_unfinished(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(ENDING)
 }
 
-/// Removes the files that killed processes left unfinished in a folder. Files that cannot be opened or removed stay; they do
-/// no harm.
+/// Removes the unfinished files that killed processes left in a folder. Files that cannot be opened or removed are left in
+/// place; they do no harm.
 pub fn remove_leftovers(folder: &Path) {
     remove_in(folder, is_unfinished, |path| fs::remove_file(path));
 }

@@ -34,7 +34,7 @@ impl Camera {
         }
     }
 
-    /// The arena and the sky above it, seen from above its south-western corner.
+    /// The arena and the sky above it, seen from a raised point south-west of its centre.
     pub fn overview(scene: &Scene) -> Self {
         let [width, depth] = scene.arena_size();
         let span = width.max(depth).max(4.0);

@@ -255,7 +255,7 @@ mod tests {
                 world.agent_params.field_of_view = field_of_view;
             });
             let world = world.expect("the world is valid");
-            let mut studio = Studio::new(&world).expect("there are few photographs");
+            let mut studio = Studio::new(&world).expect("this many photographs are allowed");
             for photograph in studio.photographs() {
                 let (pixels, whole) = subject(&take(&mut studio, &photograph));
                 let class = &world.objects[photograph.object].class;
@@ -267,8 +267,8 @@ mod tests {
     #[test]
     fn doubling_zoom_doubles_distance_and_quarters_the_pixels() {
         let pixels = |zoom: f64| {
-            let mut studio =
-                Studio::new(&world(zoom, 1, 1, vec![Object::new("cube", [0.0, 0.0])])).expect("one photograph");
+            let mut studio = Studio::new(&world(zoom, 1, 1, vec![Object::new("cube", [0.0, 0.0])]))
+                .expect("one photograph is allowed");
             let photograph = studio.photographs()[0];
             (photograph.distance, subject(&take(&mut studio, &photograph)).0 as f32)
         };
@@ -279,7 +279,8 @@ mod tests {
 
     #[test]
     fn yaw_0_shows_the_front_and_90_the_right_side() {
-        let studio = Studio::new(&world(2.0, 4, 2, vec![Object::new("car", [0.0, 0.0])])).expect("eight photographs");
+        let studio = Studio::new(&world(2.0, 4, 2, vec![Object::new("car", [0.0, 0.0])]))
+            .expect("eight photographs are allowed");
         let all = studio.photographs();
         let position = |index: usize| {
             studio
@@ -299,13 +300,13 @@ mod tests {
         car.reward = 1.0;
         let mut other = car.clone();
         (other.coordinates, other.heading) = ([40.0, -3.0], 77.0);
-        let mut alone = Studio::new(&world(2.0, 5, 2, vec![car])).expect("few photographs");
+        let mut alone = Studio::new(&world(2.0, 5, 2, vec![car])).expect("ten photographs are allowed");
         let crowd = world(2.0, 5, 2, vec![Object::new("building", [40.0, -3.0]), other]).edit(|world| {
             world.environment_params.predefined_map = 2;
             world.environment_params.light_intensity = 0.1;
             world.environment_params.fog_distance = Some(1.0);
         });
-        let mut crowd = Studio::new(&crowd.expect("the world is valid")).expect("few photographs");
+        let mut crowd = Studio::new(&crowd.expect("the world is valid")).expect("twenty photographs are allowed");
         let (all, in_crowd) = (alone.photographs(), crowd.photographs());
         for (photograph, same) in all.iter().zip(&in_crowd[10..]) {
             let (one, two) = (take(&mut alone, photograph), take(&mut crowd, same));
@@ -329,7 +330,7 @@ mod tests {
     fn no_view_shows_a_shaded_side() {
         let mut ball = Object::new("icosphere", [0.0, 0.0]);
         ball.color = driftworld_spec::Color::from_name("white");
-        let mut studio = Studio::new(&world(1.5, 8, 1, vec![ball])).expect("eight photographs");
+        let mut studio = Studio::new(&world(1.5, 8, 1, vec![ball])).expect("eight photographs are allowed");
         for photograph in studio.photographs() {
             let frame = take(&mut studio, &photograph);
             let middle = 3 * (42 * 84 + 42);

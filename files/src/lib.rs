@@ -135,8 +135,8 @@ pub fn append(path: &Path) -> std::io::Result<File> {
     options.open(path)
 }
 
-/// Opens for reading without blocking, even if a named pipe has just replaced the file. A terminal does not become the
-/// controlling one.
+/// Opens for reading without blocking, even if a named pipe has just replaced the file, and without making a terminal the
+/// controlling terminal.
 #[cfg(unix)]
 fn open_without_blocking(path: &Path) -> std::io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;

@@ -1,4 +1,4 @@
-//! Law of agent scripts: an accepted script can be played in a small world.
+//! Fuzz target for agent scripts: an accepted script can be played in a small world.
 
 use driftworld_env::{Agent, Environment, ScriptedAgent};
 use driftworld_spec::World;
@@ -13,7 +13,7 @@ const WORLD: &str = r#"{ "environment_params": { "map_size": [20, 20], "walls": 
     "objects": [{ "class": "ball", "coordinates": [0, 5], "tag": "a", "unique_name": "one" },
                 { "class": "cube", "coordinates": [-5, 0], "tag": "b", "unique_name": "two", "pushable": { "mass": 1 } }] }"#;
 
-/// An accepted script chooses an action in every step; the environment accepts or refuses it with a message.
+/// An accepted script chooses an action in every step; the environment accepts it, or refuses it with a message.
 pub(crate) fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut agent = match ScriptedAgent::parse("a.txt", &text) {
@@ -38,5 +38,5 @@ pub(crate) fn check(bytes: &[u8]) {
 
 fn small() -> World {
     let small = World::default().edit(|world| world.agent_params.observation_size = 8);
-    small.expect("pictures may be that small")
+    small.expect("images may be this small")
 }

@@ -25,7 +25,7 @@ impl Known {
         for document in &documents {
             collect_words(document, &mut words);
         }
-        let schema: Value = serde_json::from_str(schema).expect("a schema of ours is JSON");
+        let schema: Value = serde_json::from_str(schema).expect("our schemas are valid JSON");
         collect_words(&schema, &mut words);
         words.retain(|word| word.len() <= 40);
         Self {
@@ -42,7 +42,7 @@ impl Known {
         }
     }
 
-    /// A known document with edits.
+    /// A known document with the edits that the bytes describe.
     pub(crate) fn edited(&self, bytes: &mut Unstructured) -> Value {
         let mut document = self.any_document(bytes).clone();
         for _ in 0..MAX_EDITS {

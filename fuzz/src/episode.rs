@@ -1,4 +1,5 @@
-//! Law of episodes in edited worlds. Input: a length, that many bytes of edits to a known world, then the agent's actions.
+//! Fuzz target for episodes in edited worlds. Input: a length, that many bytes of edits to a known world, then the agent's
+//! actions.
 
 use arbitrary::Unstructured;
 use driftworld_env::{Action, Environment, Step};
@@ -41,8 +42,16 @@ pub(crate) fn check(bytes: &[u8]) {
         }
         let action = action(&mut actions, &first);
         let outcome = step(&mut first, action);
-        assert_eq!(outcome, step(&mut second, action), "the same world and actions");
-        assert_eq!(moment(&first), moment(&second), "the same world and actions");
+        assert_eq!(
+            outcome,
+            step(&mut second, action),
+            "the same world and actions give the same step"
+        );
+        assert_eq!(
+            moment(&first),
+            moment(&second),
+            "the same world and actions give the same state"
+        );
         if byte(&mut actions).is_multiple_of(8) {
             let saved = second.state();
             world::check_round_trip(&saved);
@@ -55,7 +64,7 @@ pub(crate) fn check(bytes: &[u8]) {
         }
     }
     let picture = first.observe().rgb.clone();
-    assert!(picture == second.observe().rgb, "the same picture");
+    assert!(picture == second.observe().rgb, "both environments give the same image");
 }
 
 fn action(bytes: &mut Unstructured, environment: &Environment) -> Action {

@@ -1,4 +1,4 @@
-//! Law of glTF models. Input after [`MARK`](crate::edited::MARK): a length, that many bytes of edits to a known file,
+//! Fuzz target for glTF models. Input after [`MARK`](crate::edited::MARK): a length, that many bytes of edits to a known file,
 //! then edits to the bytes of its buffer.
 
 use std::sync::OnceLock;

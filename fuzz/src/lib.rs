@@ -1,4 +1,5 @@
-//! Laws that hold for any bytes that Driftworld reads: one law per kind of document, file and message.
+//! Fuzz targets, one per kind of document, file and message that Driftworld reads. Each checks a law: properties that hold for
+//! any input bytes.
 //!
 //! `tests/replay.rs` checks the laws on the seeds and on small changes to them; `scripts/fuzz.sh` lets libFuzzer search for bytes
 //! that break them.
@@ -20,10 +21,10 @@ mod settings;
 mod task;
 mod world;
 
-/// A fuzz target: a law, and the folder of its seeds.
+/// A fuzz target: a law, and the folder with its seed inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Name of its folder of seeds.
+    /// Name of the folder with its seed inputs.
     pub name: &'static str,
     /// The law: panics if the bytes break it.
     pub law: fn(&[u8]),

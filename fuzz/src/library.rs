@@ -1,4 +1,5 @@
-//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header, so that the checksum does not stop the fuzzer.
+//! Fuzz target for asset libraries. Input that starts with [`SEALED`] gets a valid header, so that the checksum does not stop
+//! the fuzzer.
 
 use driftworld_env::Library;
 use sha2::{Digest, Sha256};
@@ -8,7 +9,7 @@ use crate::refusal;
 /// First byte of an input that gets a valid header.
 pub(crate) const SEALED: u8 = b'S';
 
-/// A library that can be read is written as the same bytes.
+/// A library that can be read serialises to the same bytes.
 pub(crate) fn check(bytes: &[u8]) {
     let sealed;
     let bytes = match bytes.split_first() {
@@ -19,7 +20,7 @@ pub(crate) fn check(bytes: &[u8]) {
         _ => bytes,
     };
     match Library::from_bytes(bytes) {
-        Ok(library) => assert!(library.to_bytes() == bytes, "the library is written as the same bytes"),
+        Ok(library) => assert!(library.to_bytes() == bytes, "the library serialises to the same bytes"),
         Err(error) => refusal::message(&error.to_string()),
     }
 }

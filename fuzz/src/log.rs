@@ -1,4 +1,4 @@
-//! Laws of logs with any contents: writing, reading, scoring and resuming.
+//! Fuzz target for logs with any contents: writing, reading, scoring and resuming.
 
 use std::fs;
 use std::path::Path;
@@ -20,9 +20,9 @@ const FILES: [&str; 4] = [
     "w/0-train/data-log.tsv",
 ];
 
-/// Writes the log that the bytes describe, and checks every law.
+/// Writes the log that the bytes describe, and checks all properties.
 pub(crate) fn check(bytes: &[u8]) {
-    let base = tempfile::tempdir().expect("the log can be written");
+    let base = tempfile::tempdir().expect("a temporary folder can be created");
     let dir = base.path().join("log");
     write_files(&dir, bytes);
     let valid = validate_log(&dir).is_valid();
@@ -52,7 +52,7 @@ pub(crate) fn write_files(dir: &Path, bytes: &[u8]) {
         };
         rest = after;
         let path = dir.join(name);
-        fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("the folder can be created");
+        fs::create_dir_all(path.parent().expect("the path has a parent folder")).expect("the folder can be created");
         if text != b"%" {
             fs::write(path, text).expect("the file can be written");
         }
@@ -60,10 +60,10 @@ pub(crate) fn write_files(dir: &Path, bytes: &[u8]) {
 }
 
 fn check_reading_with_texts(dir: &Path, log: &Log) {
-    let whole = read_log_with_texts(dir).expect("texts cause no error");
+    let whole = read_log_with_texts(dir).expect("reading texts causes no error");
     assert!(
         whole.rows.iter().map(shown).eq(log.rows.iter().map(shown)),
-        "texts change nothing else"
+        "reading texts changes nothing else"
     );
     let order = |row: Row<'_>| (row.exp_num(), row.block_num());
     assert!(
@@ -75,7 +75,7 @@ fn check_reading_with_texts(dir: &Path, log: &Log) {
     assert!(
         log.rows
             .iter()
-            .eq(read_log(dir).expect("it was read before").rows.iter())
+            .eq(read_log(dir).expect("the log was readable before").rows.iter())
     );
 }
 
@@ -138,7 +138,7 @@ fn without_quoted(text: &str) -> String {
 
 /// A log whose rows follow the writer's rules can be written, and reads back the same.
 fn check_writing(dir: &Path, log: &Log) {
-    let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("they were taken before");
+    let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("the columns come from a valid log");
     let mut writer = LogWriter::create(dir, &info, &log.scenario_info).expect("the folder is new");
     for row in log.rows.iter() {
         if writer.write(&row.to_record()).is_err() {
@@ -149,7 +149,7 @@ fn check_writing(dir: &Path, log: &Log) {
     if log.rows.is_empty() {
         return;
     }
-    let copy = read_log(dir).expect("what is written can be read");
+    let copy = read_log(dir).expect("a written log can be read");
     assert_eq!(sorted_rows(&copy), sorted_rows(log));
     for problem in validate_log(dir).problems {
         assert_eq!(
@@ -158,7 +158,7 @@ fn check_writing(dir: &Path, log: &Log) {
             "a written log is valid: {problem}"
         );
     }
-    LogWriter::resume(dir).expect("what is written can be continued");
+    LogWriter::resume(dir).expect("a written log can be resumed");
 }
 
 /// A resumed log can be read, and keeps everything that could be read before.

@@ -1,4 +1,4 @@
-//! Law of maps files.
+//! Fuzz target for maps files.
 
 use std::sync::OnceLock;
 
@@ -22,7 +22,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// A layout that is accepted gives valid worlds.
+/// Every accepted layout gives a valid world.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let library = match MapLibrary::from_json("m.json", &text) {
@@ -31,7 +31,7 @@ pub(crate) fn check(bytes: &[u8]) {
     };
     for layout in library.layouts() {
         let world = World::default().edit(|world| world.environment_params.predefined_map = layout.id);
-        let world = world.expect("layouts have numbers that worlds may have");
+        let world = world.expect("worlds accept the id of every layout");
         world::check_round_trip(&world.with_maps(&library));
     }
 }

@@ -1,4 +1,4 @@
-//! Law of distance matrices in CSV and JSON; the first byte chooses the format.
+//! Fuzz target for distance matrices in CSV and JSON; the first byte chooses the format.
 
 use driftworld_similarity::DistanceMatrix;
 

@@ -1,4 +1,4 @@
-//! Law of network files: an accepted network can act in a small world.
+//! Fuzz target for network files: an accepted network can act in a small world.
 
 use driftworld_env::{Agent, Environment, NetworkAgent};
 use driftworld_spec::World;
@@ -18,7 +18,7 @@ pub(crate) fn check(bytes: &[u8]) {
     agent.begin(1);
     for _ in 0..STEPS {
         let action = agent.act(&environment);
-        let step = environment.step(action).expect("a table of finite numbers");
+        let step = environment.step(action).expect("the network chooses a valid action");
         assert!(step.reward.is_finite());
     }
 }

@@ -1,5 +1,5 @@
-//! Law of ML-Agents messages. Input: a raw message, or after [`MARK`](crate::edited::MARK) a command with text on the Reset channel,
-//! such as an edited world.
+//! Fuzz target for ML-Agents messages. Input: a raw message, or after [`MARK`](crate::edited::MARK) a command with text on the
+//! Reset channel, such as an edited world.
 
 use arbitrary::Unstructured;
 use driftworld_spec::World;
@@ -26,10 +26,10 @@ const MAX_TEXT_BYTES: usize = 16_000;
 
 /// A session in a small world. Its screenshots go to a temporary folder.
 fn session() -> (Session, tempfile::TempDir) {
-    let folder = tempfile::tempdir().expect("there is room for screenshots");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let world = World::default().edit(|world| world.agent_params.observation_size = 8);
     let setup = Setup {
-        world: world.expect("pictures may be that small"),
+        world: world.expect("images may be this small"),
         ..Setup::default()
     };
     let clock = || "2026-01-01T00:00:00Z".to_owned();

@@ -1,5 +1,5 @@
-//! Properties of recorded episodes' files. Input: raw bytes, or edits to the lines of a known file. Edited lines are packed again
-//! with valid checksums, because random bytes rarely have them.
+//! Fuzz target for recordings files. Input: raw bytes, or edits to the lines of a known file. Edited lines get valid checksums,
+//! because random bytes rarely have them.
 
 use std::fs;
 use std::io::Write;
@@ -62,7 +62,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// Packs an object's text or a list of bytes: deflated and in base64. Other values stay unchanged.
+/// Deflates an object's JSON text or a list of bytes, and encodes the result in base64. Other values stay unchanged.
 fn pack(value: Value) -> Value {
     let bytes = match &value {
         Value::Object(_) => value.to_string().into_bytes(),
@@ -181,15 +181,15 @@ fn check_replay(recording: &Recording) {
             }
         }
     };
-    assert_eq!(end(), end(), "the same recording");
+    assert_eq!(end(), end(), "replays of the same recording end in the same way");
 }
 
 /// Reads and appends to the file in a log's folder.
 fn check_in_log(file: &[u8]) {
     const WORKER: &str = "w";
-    let log = tempfile::tempdir().expect("the log can be written");
+    let log = tempfile::tempdir().expect("a temporary folder can be created");
     let path = log.path().join(WORKER).join("0-train").join(RECORDINGS_FILE);
-    fs::create_dir_all(path.parent().expect("it is in a folder")).expect("the folder can be created");
+    fs::create_dir_all(path.parent().expect("the path has a parent folder")).expect("the folder can be created");
     fs::write(&path, file).expect("the file can be written");
     let numbers = |file: &RecordingsFile| {
         file.episodes()
@@ -199,7 +199,7 @@ fn check_in_log(file: &[u8]) {
     };
     let before: Vec<u64> = match RecordingsFile::open(&path) {
         Ok(file) => {
-            let file = file.expect("it is there");
+            let file = file.expect("the file exists");
             refusal::messages(file.damage());
             numbers(&file)
         }
@@ -212,9 +212,9 @@ fn check_in_log(file: &[u8]) {
     let added = small(next);
     match Recordings::new(log.path()).append(WORKER, (0, BlockType::Train), &added) {
         Ok(()) => {
-            let file = RecordingsFile::open(&path).expect("it is a file of recordings");
-            let mut file = file.expect("it is there");
-            let reread_recording = file.recording(next).expect("what was written last can be read");
+            let file = RecordingsFile::open(&path).expect("the file is a valid recordings file");
+            let mut file = file.expect("the file exists");
+            let reread_recording = file.recording(next).expect("the appended recording can be read");
             assert_eq!(reread_recording.as_ref(), Some(&added));
             let numbers_after = numbers(&file);
             assert!(numbers_after.contains(&next));
@@ -226,7 +226,7 @@ fn check_in_log(file: &[u8]) {
         Err(error) => {
             refusal::message(&error.to_string());
             // The test's own file, not by driftworld-files: no user names it.
-            let left = fs::read(&path).expect("it is there");
+            let left = fs::read(&path).expect("the file exists");
             assert_eq!(left, file, "a refused file stays unchanged");
         }
     }
@@ -238,7 +238,9 @@ fn small(experience: u64) -> Recording {
     let (mut environment, mut recorder) = (Environment::new(world.clone()), Recorder::default());
     recorder.begin(world);
     let action = Action::Continuous([1.0, 0.0, 0.0]);
-    environment.step(action).expect("it is an action of the default world");
+    environment
+        .step(action)
+        .expect("the action is valid in the default world");
     recorder.step(action);
     let mut recording = recorder.recording(&environment, None);
     recording.origin.experience = experience;

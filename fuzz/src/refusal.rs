@@ -1,4 +1,4 @@
-//! Laws of errors about a text: the message is not empty, points to an existing line, is of bounded length, and contains no
+//! Checks error messages about a text: each is not empty, points to an existing line, is of bounded length, and contains no
 //! unprintable characters.
 
 use driftworld_spec::SpecError;
@@ -7,7 +7,7 @@ use driftworld_text::is_unprintable;
 /// Maximum length of a message in bytes: fifty problems of a few hundred characters.
 const MAX_MESSAGE_BYTES: usize = 100_000;
 
-/// Law of a [`SpecError`] about a document.
+/// Checks a [`SpecError`] about a document.
 pub(crate) fn check(error: &SpecError, text: &str) {
     message(&error.to_string());
     let lines = text.split('\n').count();
@@ -17,7 +17,7 @@ pub(crate) fn check(error: &SpecError, text: &str) {
     }
 }
 
-/// Law of any message.
+/// Checks a message.
 pub(crate) fn message(text: &str) {
     assert!(!text.trim().is_empty(), "a message is not empty");
     assert!(text.len() <= MAX_MESSAGE_BYTES, "{} bytes", text.len());
@@ -25,7 +25,7 @@ pub(crate) fn message(text: &str) {
     assert!(!text.chars().any(|c| raw(&c)), "{text:?}");
 }
 
-/// Law of several messages.
+/// Checks several messages.
 pub(crate) fn messages<T: std::fmt::Display>(texts: impl IntoIterator<Item = T>) {
     for text in texts {
         message(&text.to_string());

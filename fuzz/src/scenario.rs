@@ -1,4 +1,4 @@
-//! Law of scenarios, in Driftworld's format and L2Explorer's, and of their plans.
+//! Fuzz target for scenarios, in Driftworld's format and L2Explorer's, and for their plans.
 
 use std::sync::{Arc, OnceLock};
 

@@ -1,4 +1,4 @@
-//! Law of metrics settings.
+//! Fuzz target for metrics settings.
 
 use std::sync::OnceLock;
 
@@ -27,7 +27,7 @@ fn known() -> &'static Known {
 fn lifetime() -> &'static Log {
     static LIFETIME: OnceLock<Log> = OnceLock::new();
     LIFETIME.get_or_init(|| {
-        let base = tempfile::tempdir().expect("the log can be written");
+        let base = tempfile::tempdir().expect("a temporary folder can be created");
         let dir = base.path().join("log");
         log::write_files(&dir, include_bytes!("../seeds/log/two_workers"));
         read_log(&dir).expect("the seed is valid")

@@ -1,4 +1,4 @@
-//! Law of task specs, their variants and the worlds sampled from these.
+//! Fuzz target for task specs, their variants, and the worlds sampled from the variants.
 
 use std::sync::OnceLock;
 
@@ -30,7 +30,8 @@ fn known() -> &'static Known {
     })
 }
 
-/// A task that can be read can be written, and reads back the same. Its worlds are valid, and sampling them again gives the same.
+/// A task that can be read can be written, and reads back the same. Its worlds are valid, and sampling again gives the same
+/// worlds.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let task = match TaskSpec::from_json("t.json", &text) {

@@ -1,4 +1,4 @@
-//! Law of worlds, in Driftworld's format and L2Explorer's.
+//! Fuzz target for worlds, in Driftworld's format and L2Explorer's.
 
 use std::sync::OnceLock;
 
@@ -16,7 +16,7 @@ pub(crate) fn known() -> &'static Known {
         for text in task::EXAMPLES {
             let task = driftworld_spec::TaskSpec::from_json("example", text).expect("the example is valid");
             for variant in task.all_variants().iter().take(2) {
-                let world = driftworld_generator::sample(variant, 1, 0).expect("an example can be drawn");
+                let world = driftworld_generator::sample(variant, 1, 0).expect("the example can be sampled");
                 documents.push(json(&world.to_json()));
             }
         }
@@ -27,7 +27,7 @@ pub(crate) fn known() -> &'static Known {
 }
 
 pub(crate) fn json(text: &str) -> Value {
-    serde_json::from_str(text).expect("a document of ours is JSON")
+    serde_json::from_str(text).expect("our documents are valid JSON")
 }
 
 /// A world that can be read can be written, and reads back the same, even if it was converted from L2Explorer's format.

@@ -1,6 +1,6 @@
 //! Prepares untrusted text for terminals, tables and file names: documents, logs, settings and file names may contain anything.
 //!
-//! One file per task: `printable.rs` escapes characters that a terminal obeys or hides, `cell.rs` guards against formulas in
+//! One file per task: `printable.rs` escapes characters that a terminal executes or hides, `cell.rs` guards against formulas in
 //! spreadsheets, `name.rs` checks names of variants, tasks and groups, `number.rs` rounds numbers for reading, `unbroken.rs`
 //! keeps words together on one line, `phrases.rs` builds counts and lists, `plain.rs` rewords serde's errors, `removed.rs` lists
 //! removed words, `json/` reads JSON.

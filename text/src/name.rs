@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn portable_file_names_are_names() {
+    fn portable_file_names_are_accepted() {
         for name in "red look-red-0.5 1a334d _ a+b a..b größer 日本 हिन्दी Ωmega console com com10 nullable \
              map_1-v2 0 E+1"
             .split(' ')

@@ -1,4 +1,4 @@
-//! Escapes characters that a terminal obeys or does not show.
+//! Escapes characters that a terminal treats as control codes or does not show.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
@@ -39,7 +39,7 @@ const UNPRINTABLE: [(char, char); 27] = [
     ('\u{e0000}', '\u{e01ef}'),
 ];
 
-/// Whether a terminal obeys this character or does not show it. True for line feed and tab.
+/// Whether a terminal treats this character as a control code or does not show it. True for line feed and tab.
 pub fn is_unprintable(c: char) -> bool {
     // Almost all text is ASCII.
     if matches!(c, ' '..='~') {

@@ -326,7 +326,7 @@ mod tests {
             .lines()
         {
             let (text, expected) = row.split_once(" => ").expect("a row has two parts");
-            let error = parse(text).expect_err("the value cannot be");
+            let error = parse(text).expect_err("the value is invalid");
             assert_eq!(error.to_string(), expected);
             assert_eq!(error.exit_code(), 2);
         }

@@ -85,7 +85,9 @@ mod tests {
             ..Client::default()
         };
         agent.actions = ActionSpace::Discrete(vec![[1.0, 0.0, 0.0]; 3]);
-        let spec = behavior(&agent, hybrid).action_spec.expect("new clients have one");
+        let spec = behavior(&agent, hybrid)
+            .action_spec
+            .expect("hybrid clients get an action spec");
         assert_eq!((spec.num_continuous_actions, spec.num_discrete_actions), (0, 1));
         assert_eq!(spec.discrete_branch_sizes, [3]);
     }

@@ -70,7 +70,8 @@ mod tests {
     #[test]
     fn other_major_versions_are_refused() {
         for version in ["0.15.0", "2.0.0", "", "API-12"] {
-            let error = Client::new(&first_message(version, "0.15.0", false)).expect_err("the version is another");
+            let error =
+                Client::new(&first_message(version, "0.15.0", false)).expect_err("the version is not supported");
             assert_eq!(error.code(), "unity/client-version");
         }
     }

@@ -16,7 +16,8 @@ pub enum PictureForm {
     Floats,
 }
 
-/// Properties of a dimension, for clients using protocol version 1.5 or later.
+/// Properties of a dimension, for clients using protocol version 1.5 or later: none, or translational equivariance (rows and
+/// columns of images).
 const NO_NEIGHBOURS: i32 = 1;
 const NEIGHBOURS: i32 = 2;
 
@@ -131,7 +132,7 @@ mod tests {
         let mut frame = Frame::new(metres.len() as u32, 1);
         frame.depth.clone_from(&metres);
         let observations =
-            observations(&frame, Vec::new(), PictureForm::Floats, Client::default()).expect("floats need no file");
+            observations(&frame, Vec::new(), PictureForm::Floats, Client::default()).expect("floats need no encoding");
         let Some(ObservationData::FloatData(FloatData { data })) = &observations[0].observation_data else {
             panic!("expected floats: {:?}", observations[0]);
         };

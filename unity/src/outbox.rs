@@ -60,7 +60,7 @@ mod tests {
 
     fn lengths(bytes: &[u8]) -> Vec<usize> {
         records(bytes)
-            .map(|record| record.expect("what is sent can be read").payload.len())
+            .map(|record| record.expect("our own records are valid").payload.len())
             .collect()
     }
 

@@ -6,7 +6,7 @@ use driftworld_spec::{World, WorldDraft, nearest};
 
 use crate::side_channel::Setting;
 
-/// Known parameters: settings that L2Explorer's reset files lack, or that a client may want to change independently of them.
+/// Known parameters: settings that L2Explorer's reset files lack, or that a client may want to set independently of those files.
 const KNOWN: [&str; 8] = [
     "time_step",
     "frame_skip",
@@ -116,7 +116,7 @@ mod tests {
         for key in KNOWN {
             let mut parameters = Parameters::default();
             let value = if key == "max_steps" { 7.0 } else { 3.0 };
-            set(&mut parameters, key, value).expect("3 is within all ranges");
+            set(&mut parameters, key, value).expect("the value is in range");
             let mut world = WorldDraft::default();
             parameters.apply(&mut world);
             assert_ne!(world, WorldDraft::default(), "{key}");
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn numbers_keep_their_decimal_digits() {
         let mut parameters = Parameters::default();
-        set(&mut parameters, "Time_Step", 0.1).expect("names are known in any case");
+        set(&mut parameters, "Time_Step", 0.1).expect("names ignore case");
         let mut world = WorldDraft::default();
         parameters.apply(&mut world);
         assert_eq!(world.agent_params.time_step, 0.1);
@@ -156,8 +156,8 @@ gravity 9.8 => it has no meaning here"#
         {
             let (setting, expected) = row.split_once(" => ").expect("a row has two parts");
             let (key, value) = setting.split_once(' ').expect("a setting has a value");
-            let value = value.parse().expect("it is a number");
-            let reason = set(&mut parameters, key, value).expect_err("it cannot be");
+            let value = value.parse().expect("the value is a number");
+            let reason = set(&mut parameters, key, value).expect_err("the setting is invalid");
             assert!(reason.contains(expected), "{reason}");
         }
         assert_eq!(parameters, before);

@@ -144,7 +144,7 @@ pub struct ObservationProto {
     /// The form of the data.
     #[prost(enumeration = "CompressionTypeProto", tag = "2")]
     pub compression_type: i32,
-    /// Properties of each dimension: 1 has no neighbours, 2 has (rows and columns of images).
+    /// Properties of each dimension: 2 for translational equivariance (rows and columns of images), 1 for none.
     #[prost(int32, repeated, tag = "6")]
     pub dimension_properties: Vec<i32>,
     /// Its name.

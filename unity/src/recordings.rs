@@ -47,7 +47,7 @@ impl RecordingFile {
                     "another driftworld-unity writes it; name another file",
                 )));
             }
-            // If the file system has no locks, continue without one.
+            // If the file system does not support locks, continue without one.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
         let length = file.metadata().map_err(failed)?.len();

@@ -28,7 +28,7 @@ impl Screenshots {
     /// Writes a PNG file inside the folder, whatever path the name contains, and returns its path.
     ///
     /// Subfolders in the name are kept if they stay inside the folder; of any other path only the last part is used. An existing
-    /// image of that name is replaced; of a link, the link itself and not the file that it points to.
+    /// image of that name is replaced. If the name is a link, the link is replaced, not the file that it points to.
     ///
     /// # Errors
     /// The reason why the file could not be written: an invalid name, a folder of that name, or the system's error.
@@ -151,8 +151,8 @@ mod tests {
             .write("/tmp/a.png", &[&SIGNATURE[..], b"one"].concat())
             .expect("the name is valid");
         assert_eq!(path, root.path().join("deep/out/a.png"));
-        screenshots.write("a", b"two").expect("pictures are replaced");
-        assert_eq!(fs::read(&path).expect("it was written"), b"two");
+        screenshots.write("a", b"two").expect("existing images are replaced");
+        assert_eq!(fs::read(&path).expect("the file was written"), b"two");
         screenshots.write("b/c.png", b"x").expect("missing folders are created");
         let mine = root.path().join("deep/out/train.py");
         fs::write(&mine, "mine").expect("the folder can be written");
@@ -160,7 +160,7 @@ mod tests {
             .write("train.py", b"x")
             .expect_err("a program is not a picture");
         assert!(error.contains("no picture"), "{error}");
-        assert_eq!(fs::read_to_string(&mine).expect("it still exists"), "mine");
+        assert_eq!(fs::read_to_string(&mine).expect("the file still exists"), "mine");
         fs::create_dir(root.path().join("deep/out/d.png")).expect("the folder can be written");
         let error = screenshots.write("d.png", b"x").expect_err("a folder is not a picture");
         assert!(error.contains("which is a folder"), "{error}");
@@ -174,7 +174,7 @@ mod tests {
         use std::os::unix::fs::PermissionsExt;
         let root = tempfile::tempdir().expect("a temporary folder can be created");
         let screenshots = Screenshots::new(root.path());
-        let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
+        let mode = |path: &Path| fs::metadata(path).expect("the file exists").permissions().mode() & 0o777;
         let path = screenshots.write("a", &SIGNATURE).expect("the name is valid");
         fs::write(root.path().join("plain"), "").expect("the folder can be written");
         assert_eq!(
@@ -182,8 +182,10 @@ mod tests {
             mode(&root.path().join("plain")),
             "a new file follows the umask"
         );
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("it is ours");
-        screenshots.write("a", &SIGNATURE).expect("pictures are replaced");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("the file is ours");
+        screenshots
+            .write("a", &SIGNATURE)
+            .expect("existing images are replaced");
         assert_eq!(mode(&path), 0o600);
     }
 
@@ -200,7 +202,7 @@ mod tests {
         let screenshots = Screenshots::new(&out);
         screenshots.write("a.png", b"x").expect("the link itself is replaced");
         assert!(screenshots.write("up/b.png", b"x").is_err());
-        assert_eq!(fs::read_to_string(&outside).expect("it still exists"), "mine");
+        assert_eq!(fs::read_to_string(&outside).expect("the file still exists"), "mine");
         assert!(!root.path().join("b.png").exists());
     }
 }

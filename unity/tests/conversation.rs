@@ -29,9 +29,9 @@ fn session(folder: &std::path::Path) -> Session {
 }
 
 fn input(bytes: &[u8]) -> UnityInputProto {
-    let message = UnityMessageProto::decode(bytes).expect("clients send what they say they do");
+    let message = UnityMessageProto::decode(bytes).expect("the recorded message is valid");
     assert_eq!(message.header.expect("every message has a header").status, 200);
-    message.unity_input.expect("clients say something")
+    message.unity_input.expect("every recorded message has an input")
 }
 
 /// A checksum: 64-bit FNV-1a.
@@ -43,9 +43,9 @@ fn checksum(bytes: &[u8]) -> u64 {
 fn picture(png: &[u8]) -> String {
     let mut reader = png::Decoder::new(std::io::Cursor::new(png))
         .read_info()
-        .expect("the picture is a PNG file");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("the picture is small")];
-    let info = reader.next_frame(&mut pixels).expect("the picture is whole");
+        .expect("the image is a PNG file");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("the image is small")];
+    let info = reader.next_frame(&mut pixels).expect("the image is complete");
     pixels.truncate(info.buffer_size());
     let (width, height, colors) = (info.width, info.height, info.color_type);
     format!("PNG {width} × {height} {colors:?} {:016x}", checksum(&pixels))
@@ -96,7 +96,7 @@ fn behavior(text: &mut String, parameters: &BrainParametersProto) -> std::fmt::R
 
 /// The side channel messages, with their channels.
 fn side_channel_messages(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
-    let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().expect("four bytes")) as usize;
+    let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().expect("a number has four bytes")) as usize;
     let mut found = Vec::new();
     while !bytes.is_empty() {
         let (head, rest) = bytes.split_at(20);
@@ -120,7 +120,7 @@ fn output(text: &mut String, output: &UnityOutputProto) -> std::fmt::Result {
     {
         behavior(text, parameters)?;
     }
-    let results = output.rl_output.as_ref().expect("something happened");
+    let results = output.rl_output.as_ref().expect("every output has results");
     assert_eq!(results.agent_infos.len(), 1, "there is one behaviour");
     for info in &results.agent_infos[BEHAVIOR].value {
         agent(text, info)?;
@@ -137,18 +137,16 @@ fn answers(release: &str) -> Result<String, std::fmt::Error> {
     let mut session = session(folder.path());
     let mut text = String::new();
     let recorded = messages(release);
-    let ((_, first), rest) = recorded.split_first().expect("the client says who it is");
-    let ((_, last), rest) = rest.split_last().expect("the client ends");
+    let ((_, first), rest) = recorded.split_first().expect("the recording has a first message");
+    let ((_, last), rest) = rest.split_last().expect("the recording has a last message");
     let identity = input(first)
         .rl_initialization_input
-        .expect("the first message says who");
-    session
-        .begin(&identity)
-        .expect("the client is of a version that is known");
+        .expect("the first message identifies the client");
+    session.begin(&identity).expect("the client's version is supported");
     for (about, bytes) in rest {
         writeln!(text, "{about}")?;
-        let command = input(bytes).rl_input.expect("the client says what to do");
-        match session.answer(&command).expect("the client says nothing wrong") {
+        let command = input(bytes).rl_input.expect("the message has a command");
+        match session.answer(&command).expect("the command is valid") {
             Turn::Output(answer) => output(&mut text, &answer)?,
             Turn::Quit => panic!("unexpected quit"),
         }
@@ -157,7 +155,7 @@ fn answers(release: &str) -> Result<String, std::fmt::Error> {
             writeln!(text, "  remark: {remark}")?;
         }
     }
-    let last = UnityMessageProto::decode(last.as_slice()).expect("the end is a message");
+    let last = UnityMessageProto::decode(last.as_slice()).expect("the last message is valid");
     assert_eq!(
         (last.header.map(|header| header.status), last.unity_input),
         (Some(400), None)
@@ -171,7 +169,7 @@ fn answers(release: &str) -> Result<String, std::fmt::Error> {
 fn answers_to_each_release_are_unchanged() {
     for release in RELEASES {
         let name = format!("answers_to_{release}");
-        insta::assert_snapshot!(name, answers(release).expect("texts can be written"));
+        insta::assert_snapshot!(name, answers(release).expect("writing to a String does not fail"));
     }
 }
 
@@ -180,15 +178,15 @@ fn same_conversation_gives_the_same_answers() {
     assert_eq!(answers("0.16"), answers("0.16"));
 }
 
-/// Decoding loses no other field: encoding a decoded message restores its bytes.
+/// Encoding a decoded message restores its bytes.
 #[test]
-fn only_the_number_of_areas_is_skipped_in_clients_messages() {
+fn decoding_drops_only_the_number_of_areas() {
     // The last field of a client's first message: the number of copies of its scene that Unity should build, which does not apply
     // here.
     let areas = [5 << 3, 1];
     for release in RELEASES {
         for (about, mut bytes) in messages(release) {
-            let message = UnityMessageProto::decode(bytes.as_slice()).expect("the message is one");
+            let message = UnityMessageProto::decode(bytes.as_slice()).expect("the message is valid");
             let mut kept = message.encode_to_vec();
             if release != "0.16" && about == "who the client is" {
                 assert!(bytes.ends_with(&areas), "{release}");
@@ -210,8 +208,8 @@ fn quit_handles_its_messages_and_ends_the_session() {
     let (_, bytes) = messages("1.1")
         .into_iter()
         .find(wants_screenshot)
-        .expect("one asks for a screenshot");
-    let request = input(&bytes).rl_input.expect("it is a command");
+        .expect("one message requests a screenshot");
+    let request = input(&bytes).rl_input.expect("the message has a command");
     let quit = UnityRlInputProto {
         command: CommandProto::Quit.into(),
         ..request

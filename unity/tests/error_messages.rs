@@ -36,7 +36,7 @@ fn errors() -> Vec<UnityError> {
             },
         },
         UnityError::Network(io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files")),
-        document.expect_err("steps are counted from 0").into(),
+        document.expect_err("the number of steps is not negative").into(),
         UnityError::NoClient {
             address: address(),
             seconds: 60.0,

@@ -1,4 +1,4 @@
-//! A session refuses malicious or broken messages within limits, and continues.
+//! A session refuses malicious and malformed messages with bounded answers, and continues.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::{
@@ -23,7 +23,7 @@ fn session() -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let world = World::default().edit(|world| world.agent_params.observation_size = 8);
     let setup = Setup {
-        world: world.expect("pictures may be that small"),
+        world: world.expect("images may be this small"),
         ..Setup::default()
     };
     let clock = || "2026-01-01T00:00:00Z".to_owned();
@@ -326,7 +326,7 @@ fn parameters_invalid_in_a_world_are_skipped_for_it() {
         command: CommandProto::Reset.into(),
         ..UnityRlInputProto::default()
     };
-    answer(&mut session, &input).expect("the world is one without the parameter");
+    answer(&mut session, &input).expect("the world is valid without the parameter");
     let remarks = session.take_remarks();
     assert!(
         remarks.iter().any(|remark| remark.contains("do not suit")),
@@ -407,7 +407,7 @@ fn invalid_commands_and_actions_change_nothing() {
         (actions(&[(BEHAVIOR, &[&[0.0, 0.0, f32::NEG_INFINITY]])]), "unity/env"),
     ] {
         let (mut session, _folder) = session();
-        let error = answer(&mut session, &input).expect_err("it cannot be");
+        let error = answer(&mut session, &input).expect_err("the input is invalid");
         assert_eq!(error.code(), code, "{error}");
         assert_session_works(&mut session);
     }

@@ -102,11 +102,11 @@ fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
 }
 
 fn read(path: &std::path::Path) -> Vec<Recording> {
-    let file = std::fs::File::open(path).expect("it was written");
-    let mut reader = RecordingReader::new(BufReader::new(file)).expect("it is whole");
+    let file = std::fs::File::open(path).expect("the file was written");
+    let mut reader = RecordingReader::new(BufReader::new(file)).expect("the file is complete");
     let mut found = Vec::new();
-    while let Some(episode) = reader.next_episode().expect("it is whole") {
-        found.push(reader.recording(&episode).expect("it is whole"));
+    while let Some(episode) = reader.next_episode().expect("the file is complete") {
+        found.push(reader.recording(&episode).expect("the file is complete"));
     }
     found
 }
@@ -135,9 +135,9 @@ proptest! {
             edits += usize::from(matches!(act, Act::Create(..)));
             match (act, &agents[..]) {
                 (Act::Reset, _) => episodes.push(Vec::new()),
-                (_, [(reward, false)]) => episodes.last_mut().expect("there is one").push(*reward),
+                (_, [(reward, false)]) => episodes.last_mut().expect("there is a current episode").push(*reward),
                 (_, [(reward, true), _]) => {
-                    episodes.last_mut().expect("there is one").push(*reward);
+                    episodes.last_mut().expect("there is a current episode").push(*reward);
                     episodes.push(Vec::new());
                 }
                 other => panic!("{other:?}"),
@@ -152,13 +152,13 @@ proptest! {
         let recordings = session.take_recordings();
         let mut half = recordings.len() / 2;
         // A client that restarts the program continues the same file.
-        let mut file = RecordingFile::open(&path).expect("it can be made");
+        let mut file = RecordingFile::open(&path).expect("the file can be created");
         for recording in recordings {
             if half == 0 {
                 drop(file);
-                let torn = std::fs::OpenOptions::new().append(true).open(&path).expect("it is there");
+                let torn = std::fs::OpenOptions::new().append(true).open(&path).expect("the file exists");
                 std::io::Write::write_all(&mut &torn, b"{\"experi").expect("the file can be written");
-                file = RecordingFile::open(&path).expect("it goes on");
+                file = RecordingFile::open(&path).expect("the file can be continued");
             }
             half = half.wrapping_sub(1);
             file.write(recording).expect("the file can be written");
@@ -178,8 +178,8 @@ proptest! {
 fn file_is_locked_against_a_second_program() {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let path = folder.path().join("episodes.jsonl");
-    let first = RecordingFile::open(&path).expect("it can be made");
-    let error = RecordingFile::open(&path).expect_err("it is written already");
+    let first = RecordingFile::open(&path).expect("the file can be created");
+    let error = RecordingFile::open(&path).expect_err("the file is already open for writing");
     assert!(
         error.to_string().contains("another driftworld-unity writes it"),
         "{error}"
@@ -187,7 +187,9 @@ fn file_is_locked_against_a_second_program() {
     drop(first);
     std::fs::write(&path, World::default().to_json_pretty()).expect("the file can be written");
     assert_eq!(
-        RecordingFile::open(&path).expect_err("it is a world").code(),
+        RecordingFile::open(&path)
+            .expect_err("the file contains a world")
+            .code(),
         "unity/recording"
     );
 }

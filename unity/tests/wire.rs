@@ -39,7 +39,11 @@ fn floats(field: u8, values: &[f32]) -> Vec<u8> {
 fn check<M: Message + Default + PartialEq + std::fmt::Debug>(message: &M, parts: &[Vec<u8>]) {
     let bytes = parts.concat();
     assert_eq!(message.encode_to_vec(), bytes, "encoding {message:?}");
-    assert_eq!(&M::decode(bytes.as_slice()).expect("it is valid"), message, "decoding");
+    assert_eq!(
+        &M::decode(bytes.as_slice()).expect("the bytes are valid"),
+        message,
+        "decoding"
+    );
 }
 
 #[test]
@@ -95,7 +99,7 @@ fn inputs_have_the_published_field_numbers() {
     assert_eq!(numbers, [0, 1, 2]);
     // Field 4 is the trainer's value estimate, which is ignored.
     let parameters = AgentActionProto::decode([floats(1, &[1.0]), float(4, 3.0)].concat().as_slice());
-    assert_eq!(parameters.expect("it is valid").vector_actions, [1.0]);
+    assert_eq!(parameters.expect("the bytes are valid").vector_actions, [1.0]);
 }
 
 fn capabilities() -> UnityRlCapabilitiesProto {

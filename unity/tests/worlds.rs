@@ -92,7 +92,7 @@ proptest! {
         let mut environment = Environment::new(world.clone().check().expect("the world is valid"));
         let mut session = session(world, Catalogue::default(), is_new);
         let first = answer(&mut session, CommandProto::Reset, None);
-        let behavior = &first.rl_initialization_output.expect("the reply initialises").brain_parameters[0];
+        let behavior = &first.rl_initialization_output.expect("the first reply describes the behaviour").brain_parameters[0];
         prop_assert_eq!(behavior.vector_action_space_type, i32::from(SpaceTypeProto::Discrete));
         prop_assert_eq!(&behavior.vector_action_size, &vec![count as i32]);
         prop_assert_eq!(behavior.action_spec.is_some(), is_new);
@@ -102,7 +102,7 @@ proptest! {
         }
         for number in rows {
             let number = number.index(count);
-            environment.step(Action::Discrete(number)).expect("the row is there");
+            environment.step(Action::Discrete(number)).expect("the row exists");
             let output = answer(&mut session, CommandProto::Step, Some(row(number, is_new)));
             prop_assert_eq!(&floats(&agents(&output)[0], 3)[1..], environment.state_vector());
         }
@@ -164,7 +164,7 @@ fn photographs_are_shown_one_per_step_until_the_last() {
         let mut frame = driftworld_env::Frame::new(12, 12);
         studio
             .take(view, &mut frame.target())
-            .expect("the view is of this studio");
+            .expect("the view belongs to this studio");
         let rgb = floats(agent, 1);
         // Channels first, as the latest generation expects.
         let expected: Vec<f32> = (0..3)
@@ -222,7 +222,7 @@ fn world_without_objects_to_photograph_gives_a_remark_and_runs() {
 #[test]
 fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/assets/lighthouse.gltf");
-    let bytes = std::fs::read(path).expect("the example is there");
+    let bytes = std::fs::read(path).expect("the example file exists");
     let options = ImportOptions {
         class: "lighthouse".into(),
         name: "1".into(),
@@ -233,7 +233,9 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
     let imported = LibraryModel::from_gltf(&bytes, &options, &mut |_| unreachable!("the file names no other"))
         .expect("the example is a valid model");
     let mut library = Library::default();
-    library.insert(imported.model).expect("the file can be written");
+    library
+        .insert(imported.model)
+        .expect("the library has room for a model");
     let mut world = WorldDraft::with_objects(vec![
         Object::new("lighthouse", [0.0, 12.0]),
         Object::new("dragon", [5.0, 9.0]),

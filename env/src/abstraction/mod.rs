@@ -223,8 +223,8 @@ fn tables(world: &World, grid: StateGrid, open: &[bool], results: &[Vec<MacroRes
     found
 }
 
-/// The state of a pose. If the agent does not fit in that cell, the nearest of the eight cells around it in which it fits;
-/// `otherwise` if there is none.
+/// The state of a pose. If the agent does not fit in that cell, the state in the nearest of the eight surrounding cells in
+/// which it fits; `otherwise` if there is none.
 fn standable_state(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
     let own = grid.state_at(place, heading_deg);
     if open[own / NUM_HEADINGS] {

@@ -54,7 +54,7 @@ fn block(mesh: &Mesh, normals: &[[f32; 3]], triangles: &[usize]) -> Block {
     let mut block = Block {
         corners: [[0.0; BLOCK]; 9],
         normal: [[0.0; BLOCK]; 3],
-        // Unused lanes have no normal, and a plane that is always seen from behind.
+        // Unused lanes have a zero normal and a plane that always faces away.
         offset: [1.0; BLOCK],
     };
     for (lane, &triangle) in triangles.iter().enumerate() {

@@ -75,7 +75,7 @@ mod tests {
             mesh
         }
 
-        /// Bands between neighbouring rings, and caps on ends that are not points.
+        /// Joins neighbouring rings with bands, and caps the ends that are not points.
         fn join(&mut self, rings: &[(u32, u32)], segments: u32) {
             for pair in rings.windows(2) {
                 self.band(pair[0], pair[1], segments);

@@ -28,8 +28,8 @@ const THREADS_PER_PROCESSOR: usize = 4;
 /// `num_envs` environments that step together.
 ///
 /// Each behaves exactly as a single [`Environment`] would, regardless of the number of threads. A step in which no episode
-/// begins allocates nothing, except a small block for each additional thread. Worlds allocate in steps in which something is
-/// pushed or respawns, bodies overlap, or an agent on rails chooses a destination.
+/// begins allocates nothing, except a small block for each additional thread. Steps also allocate when something is pushed
+/// or respawns, when bodies overlap, and when an agent on rails chooses a destination.
 ///
 /// # Example
 /// ```
@@ -50,7 +50,7 @@ pub struct Batch {
     finals: Option<Outputs>,
     autoreset: Autoreset,
     renderers: Vec<CpuRenderer>,
-    /// Draws all environments' images together, if on a GPU; the renderers above are idle then.
+    /// Draws the images of all environments together, if a GPU is used; `renderers` are idle then.
     graphics: Option<Renderer>,
     pool: Option<rayon::ThreadPool>,
 }

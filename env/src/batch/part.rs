@@ -11,8 +11,8 @@ use crate::prefetch::prefetch;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
 
-/// Number of parts per thread into which the rest of a batch is divided. It exceeds 1 because environments near many objects
-/// take longer.
+/// Number of parts per thread into which the remaining environments are divided. It exceeds 1 because environments whose
+/// agents are near many objects take longer.
 const PARTS_PER_THREAD: usize = 4;
 
 /// Maximum number of checks whether the other threads have finished, before sleeping; together they take about 100 µs.

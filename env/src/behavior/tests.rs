@@ -49,7 +49,7 @@ fn expert_goes_for_the_colour_that_pays_at_home() {
     assert_eq!((own.earned, own.success), (20.0, true));
     let other = expertise.abroad(&red, &blue).expect("the expert runs");
     assert!(other.earned <= -10.0 && !other.success, "{other:?}");
-    // The order and the tags of objects at home make no difference.
+    // The order of the objects at home makes no difference.
     let mut reversed = world(RED, BLUE);
     reversed.objects.reverse();
     assert_eq!(
@@ -153,7 +153,7 @@ proptest! {
             draft
         };
         let (red, mut blue) = (draft(RED, BLUE), draft(BLUE, RED));
-        // The same objects in the same places, with opposite rewards.
+        // The same objects in the same places, with rewards of opposite sign.
         for (own, other) in blue.objects.iter_mut().zip(&red.objects) {
             (own.color, own.reward) = (other.color, -other.reward / 2.0 - 1.0);
         }

@@ -10,7 +10,7 @@ use crate::{EnvError, Environment};
 /// The parts of a world that a client can observe.
 pub(super) const PARTS: [&str; 4] = ["agent_params", "environment_params", "objects", "game_mode"];
 
-/// The longest side of a screenshot in pixels.
+/// Maximum width and height of a screenshot in pixels.
 const MAX_SIDE: u32 = 4096;
 
 /// A request for a colour image of what the agent sees now.

@@ -1,5 +1,5 @@
-//! Runs two worlds side by side. Before each step both have the same state, and both bodies get the same command, so any
-//! difference after it is due to an element.
+//! Runs two worlds side by side. Before each step both have the same state, and both agents get the same command, so any
+//! difference afterwards is due to an element of the decision process.
 
 use driftworld_spec::{Element, Modality, World};
 

@@ -78,7 +78,7 @@ impl StateSpace {
     }
 }
 
-/// A difference in the ground on which objects can be.
+/// A difference in the ground that objects can occupy: the arena's size, the regions, or the walls.
 pub(super) fn ground_difference(a: &World, b: &World) -> Option<Difference> {
     let (own, other) = (&a.environment_params, &b.environment_params);
     let walls = |world: &World| -> Vec<Vec<[f64; 2]>> {
@@ -94,7 +94,7 @@ pub(super) fn ground_difference(a: &World, b: &World) -> Option<Difference> {
     .or_else(|| Difference::of("the walls", &walls(a), &walls(b)))
 }
 
-/// A difference in the available actions, or in the commands that they give the body.
+/// A difference in the available actions, or in the commands that they give to the agent's body.
 pub(super) fn action_difference(a: &World, b: &World) -> Option<Difference> {
     let space = |agent: &AgentParams| match agent.num_actions() {
         Some(rows) => format!("{rows} rows of a table"),
@@ -145,7 +145,7 @@ fn describe(action: Action) -> String {
     }
 }
 
-/// The command that an action gives the body for one second, as text; `None` if the world has no such action.
+/// The command that an action gives to the agent's body for one second, as text; `None` if the world has no such action.
 fn intent_text(world: &World, action: Action) -> Option<String> {
     let per_second = AgentParams {
         time_step: 1.0,

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A world with cubes that pay when touched, a barrel that costs, and a tree.
+/// A world with cubes that pay when touched, a barrel that costs points, and a tree.
 fn world() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [30.0, 30.0];
@@ -193,7 +193,7 @@ fn changes_to_doors_switches_keys_and_energy_are_found() {
 }
 
 #[test]
-fn zones_that_pay_or_end_belong_to_the_rewards() {
+fn zones_that_pay_or_end_the_episode_belong_to_the_rewards() {
     let zone = |change: fn(&mut Zone)| {
         move |world: &mut WorldDraft| {
             let mut zone = Zone::disc([0.0, -2.0], 1.5);
@@ -215,7 +215,7 @@ fn zones_that_pay_or_end_belong_to_the_rewards() {
     check(&[Element::T], &zone(|zone| zone.speed_factor = 0.5));
 }
 
-/// The corners are the same, but sums are rounded differently.
+/// The two pieces together have the same outline, but sums are rounded differently.
 #[test]
 fn wall_in_two_pieces_looks_like_one() {
     let wall = |x: [f64; 2]| Wall {
@@ -259,7 +259,7 @@ fn rewards_are_compared_even_if_all_transitions_differ() {
 }
 
 #[test]
-fn rewards_and_ends_belong_to_the_rewards() {
+fn rewards_and_episode_ends_belong_to_the_rewards() {
     check(&[Element::R], |world| world.objects[0].reward = 3.0);
     check(&[Element::R], |world| world.objects[2].reward = -50.0);
     check(&[Element::R], |world| world.rules.reward_per_second = -2.0);
@@ -345,7 +345,7 @@ fn witness_names_the_world_and_both_values() {
         .expect("the experiment runs");
     let witness = found.witness(Element::R).expect("the reward differs");
     assert_eq!((witness.world, witness.what.as_str()), (Some(0), "the reward"));
-    let [a, b] = [&witness.a, &witness.b].map(|text| text.parse::<f64>().expect("a number"));
+    let [a, b] = [&witness.a, &witness.b].map(|text| text.parse::<f64>().expect("the value is a number"));
     assert_eq!(a - b, 7.0, "{witness:?}");
     let back = Experiment::default()
         .compare(&[(checked(&changed), checked(&own))])

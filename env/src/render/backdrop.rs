@@ -1,4 +1,4 @@
-//! Computes sky and ground by formula: the distance of the ground and the colours of each row of an image.
+//! Computes sky and ground analytically: the distance of the ground and the colours of each row of an image.
 
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
 use super::lanes::{Lanes, MAX_LANES};
@@ -23,7 +23,8 @@ pub(super) struct Backdrop {
     pub(super) rise: Vec<f32>,
     /// 1 / distance of the ground along the view axis; 0 in rows of sky.
     pub(super) ground: Vec<f32>,
-    /// Packed pixels: the sky's in all four, or those of the ground's light and dark squares, in light and in dark blocks.
+    /// Packed pixels of each row: in rows of sky, the same in all four buffers; otherwise those of the ground's light and dark
+    /// squares, first in light blocks, then in dark ones.
     pub(super) pixels: [Vec<u32>; 4],
     /// Colour of the fog, as levels 0 to 255.
     pub(super) fog_color: [f32; 3],

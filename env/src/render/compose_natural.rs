@@ -19,11 +19,11 @@ use super::view::View;
 /// The share of detail at full strength.
 const FULL_SHARE: u32 = 255;
 
-/// Smallest visible darkening, as a share; anything fainter changes no pixel. It is far above rounding errors, so that rows
-/// that are skipped without computing the darkening would not have been darkened.
+/// Smallest visible darkening, as a share; anything fainter changes no pixel. It is far above rounding errors, so rows for
+/// which the computation is skipped would not have been darkened anyway.
 const MIN_DARKENING: f32 = 1e-4;
 
-/// Distance in metres that stands for "no foot" in a column.
+/// Distance in metres that marks a column without a foot.
 const NOWHERE: f32 = 1e9;
 
 /// Everything that an image is composed of.

@@ -1,4 +1,4 @@
-//! Draws the things that the agent carries as small pictures at the bottom of its view. They appear only in the colour image,
+//! Draws the objects that the agent carries as small pictures at the bottom of its view. They appear only in the colour image,
 //! and are always drawn on the CPU, so that their pixels do not depend on the renderer.
 
 use driftworld_spec::World;
@@ -8,17 +8,17 @@ use super::target::Target;
 use crate::camera::Camera;
 use crate::scene::{Item, Light, Scene};
 
-/// The image's height divided by the height of a thing's picture.
+/// The image's height divided by the height of an object's picture.
 const HEIGHT_DIVISOR: u32 = 5;
 
-/// Minimum height of a thing's picture in pixels, if the image is that large.
+/// Minimum height of an object's picture in pixels, if the image is that large.
 const MIN_SIDE: u32 = 8;
 
-/// Draws carried things. Allocates for the first one, and afterwards only for larger pictures.
+/// Draws carried objects. Allocates for the first one, and afterwards only for larger pictures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hand(Option<Box<Studio>>);
 
-/// A scene with only the thing to draw.
+/// A scene with only the object to draw.
 #[derive(Clone, Debug)]
 struct Studio {
     renderer: CpuRenderer,
@@ -62,13 +62,13 @@ impl Default for Studio {
 }
 
 impl Studio {
-    /// Draws one thing so that it fills a square, in the world's light but without fog.
+    /// Draws one object so that it fills a square, in the world's light but without fog.
     fn draw(&mut self, item: &Item, light: Light, side: u32) {
         /// Behind the camera, to its left and above, so that every visible side is lit.
         const SUN: [f32; 3] = [-0.36, -0.8, 0.48];
-        /// Distance of the camera, in lengths of the thing.
+        /// Distance of the camera, in lengths of the object.
         const DISTANCE: f32 = 3.0;
-        /// Height of the camera above the thing's centre.
+        /// Height of the camera above the object's centre.
         const ABOVE: f32 = 0.6;
         let length = item.asset.height.max(2.0 * item.asset.radius).max(1e-3);
         let item = Item {
@@ -107,7 +107,7 @@ impl Studio {
             .expect("the side is 1 to 4096 pixels, and the buffers have its size");
     }
 
-    /// Copies the thing's pixels, without their background, into an image.
+    /// Copies the object's pixels, without their background, into an image.
     fn paste(&self, rgb: &mut [u8], width: u32, [left, top]: [u32; 2], side: u32) {
         for (pixel, _) in self.instance.iter().enumerate().filter(|(_, item)| **item > 0) {
             let [x, y] = [pixel as u32 % side, pixel as u32 / side];

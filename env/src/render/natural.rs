@@ -1,4 +1,4 @@
-//! The natural style on the CPU. Draws objects with their texels, and marks walls and zones with the number of their covering;
+//! The natural style on the CPU. Draws objects with their texels, and marks walls and zones with their material numbers;
 //! `compose_natural.rs` adds the texels of walls and zones.
 
 use driftworld_spec::Surface;
@@ -146,7 +146,7 @@ struct Picture<'a> {
     daylight: Daylight,
     /// Whether the canvas stores items' classes instead of their indices.
     keeps_classes: bool,
-    /// Whether items' labels contain their classes, in the bits that contain the covering's number for the map.
+    /// Whether items' labels contain their classes, in the bits that hold the material number for pixels of the map.
     labels_classes: bool,
 }
 
@@ -343,7 +343,7 @@ pub(super) fn fog_words(daylight: &Daylight) -> [u32; 2] {
     [daylight.horizon, fog_towards_sun(daylight)].map(|levels| packed(levels, 0))
 }
 
-/// Unit vector over the ground towards the sky's glow; `None` under a ceiling or with the sun overhead.
+/// Horizontal unit vector towards the sky's glow; `None` under a ceiling or with the sun overhead.
 pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<[f32; 2]> {
     let [x, y, _] = daylight.direction;
     let length = (x * x + y * y).sqrt();

@@ -144,7 +144,7 @@ pub(super) struct WallCache<L: Lanes> {
     inverse: L::Float,
     /// The bits of a packed pixel that identify the covering.
     material: L::Word,
-    /// Distance in metres, for depth images and formulas.
+    /// Distance in metres, for depth images and for darkening contacts.
     pub(super) metres: L::Float,
     /// Texels per side, texels per metre of depth, and the last texel of a row.
     side: L::Float,

@@ -16,7 +16,7 @@ pub(super) struct ShadingParams {
     /// Label, in the highest byte.
     pub(super) label: u32,
     pub(super) item: u32,
-    /// Whether parts of it may be in front of the near plane.
+    /// Whether parts of it may lie between the camera and the near plane.
     pub(super) may_need_clipping: bool,
 }
 

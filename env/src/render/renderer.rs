@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_processor_is_always_there() {
+    fn cpu_renderer_is_always_available() {
         let renderer = Renderer::new(RendererKind::Cpu).expect("the CPU renderer always works");
         assert_eq!(renderer.kind(), RendererKind::Cpu);
         assert!(renderer.device().starts_with("processor ("));

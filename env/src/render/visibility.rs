@@ -22,8 +22,8 @@ pub(super) enum Drawable {
     Panels(u32),
 }
 
-/// Collects everything that may be visible, in the scene's order; includes the arena's own walls only if they are not drawn by
-/// formula.
+/// Collects everything that may be visible, in the scene's order; leaves out the arena's own walls if they are computed
+/// analytically.
 pub(super) fn find(scene: &Scene, view: &View, walls_by_formula: bool, found: &mut Vec<Visible>) {
     found.clear();
     let mut record = |middle: [f32; 3], radius: f32, drawable: Drawable| {

@@ -57,7 +57,7 @@ pub(super) fn apply_action(
 
 /// Moves the agent's body as far as solid objects allow, sliding along them; returns its new position.
 ///
-/// At no speed does it pass through anything. Stores the path for [`CollisionWorld::path`].
+/// It never passes through anything, however fast it moves. Stores the path for [`CollisionWorld::path`].
 fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut Budget) -> [f32; 2] {
     let start = from.map(f64::from);
     let way = by.map(f64::from);
@@ -78,7 +78,7 @@ fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut
     if obstacles.is_clear(start, way, bodies.radius) {
         bodies.scratch.path.push(to);
     } else {
-        // It may turn in any direction, but walks no farther than intended.
+        // It may be deflected in any direction, but moves no farther than intended.
         let whole = bodies.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, budget);
         let Some(num_corners) = whole else { return from };
         let mut scratch = std::mem::take(&mut bodies.scratch);

@@ -114,7 +114,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn list_of_few_bodies_finds_what_the_trees_find(
+        fn list_finds_the_same_bodies_as_the_trees(
             bodies in prop::collection::vec((0..4_usize, -9.0..9.0_f32, -9.0..9.0_f32, 0.0..3.0_f32), 1..MAX_LISTED),
             removed in prop::collection::vec(0..MAX_LISTED, 0..6),
             [x, y, side] in [-9.0..9.0_f32, -9.0..9.0_f32, 0.0..6.0_f32],

@@ -42,8 +42,8 @@ impl Budget {
     }
 }
 
-/// Queries for a queue whose order never changes. Half of them are reserved for the positions from a certain one on, which
-/// changes with every time step, so that no body waits forever behind the same crowd.
+/// Queries for a queue whose order never changes. Half of them are reserved for the rear of the queue, starting at a position
+/// that changes with every time step, so that no body waits forever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SharedBudget {
     budget: Budget,

@@ -25,7 +25,7 @@ pub(crate) struct CollisionWorld {
     pub(super) engine: Box<Engine>,
     /// For each object, its collider while it is present.
     pub(super) handles: Vec<Option<ColliderHandle>>,
-    /// Colliders of carried things, which are removed from the trees but kept so that they can be put back without allocating.
+    /// Colliders of carried objects, which are removed from the trees but kept so that they can be put back without allocating.
     pub(super) set_aside: Vec<(u32, ColliderHandle)>,
     /// The agent's own collider, if moving objects may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
@@ -314,7 +314,7 @@ impl CollisionWorld {
     ) -> Option<usize> {
         let mut numbers = std::mem::take(&mut self.scratch.numbers);
         numbers.clear();
-        // Capacity for what most paths meet, so that steps do not allocate.
+        // Enough capacity for most paths, so that steps do not allocate.
         numbers.reserve(64);
         self.scratch.touched.reserve(16);
         self.scratch.path.reserve(64);

@@ -110,7 +110,7 @@ impl CollisionWorld {
 
 /// Adds an object to a list. Duplicates are removed when the list is sorted.
 fn record(met_objects: &mut Vec<u32>, object: u32) {
-    // Capacity for what most steps touch, so that steps do not allocate.
+    // Enough capacity for most steps, so that they do not allocate.
     met_objects.reserve(64);
     met_objects.push(object);
 }

@@ -1,4 +1,4 @@
-//! Opens and closes doors in response to events and by their clocks.
+//! Opens and closes doors in response to events and to their own clocks.
 
 use driftworld_spec::{Door, MotionModel, World};
 

@@ -17,25 +17,25 @@ pub struct Event {
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
-    /// The object's reaction, if it is a door, a switch or a portable thing.
+    /// The object's reaction, if it is a door, a switch or portable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<Effect>,
 }
 
-/// The reaction of a door, a switch or a portable thing to a stimulus.
+/// The reaction of a door, a switch or a portable object to a stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Effect {
     /// The door opened.
     Opened,
-    /// Something asked the door to close; it closes at the end of the time step, or as soon as nothing stands in it.
+    /// The door was triggered to close; it closes at the end of the time step, or as soon as nothing stands in it.
     Closed,
     /// The switch opened or closed its doors.
     Switched,
-    /// The agent picked the thing up.
+    /// The agent picked the object up.
     PickedUp,
-    /// The agent put the thing down.
+    /// The agent put the object down.
     PutDown,
 }
 
@@ -58,7 +58,7 @@ pub enum EndedBy {
     Touch,
     /// A door was opened.
     Opened,
-    /// The agent carried a thing that ends the episode.
+    /// The agent carried an object that ends the episode.
     Carried,
     /// Everything that had to be delivered was in place.
     Delivered,

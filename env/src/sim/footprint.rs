@@ -305,7 +305,7 @@ mod tests {
             let Some(body) = Footprint::around(points) else { return Ok(()) };
             let mut widened = Footprint::disc([0.0; 2], 0.0);
             standing.widen_into(&body, &mut widened);
-            // The distance of two convex shapes is the minimum over the boundary of one of them.
+            // The distance between two convex shapes is the minimum over the boundary of one of them.
             let mut least = f64::INFINITY;
             for (from, to) in body.corners.iter().zip(body.corners.iter().cycle().skip(1)) {
                 for k in 0..=500 {

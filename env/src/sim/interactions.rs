@@ -54,7 +54,7 @@ pub(super) fn apply_stimuli(
             .in_reach(state.agent.position, state.agent.forward(), reached);
         triggered.extend(reached.iter().map(|index| (*index, Stimulus::AgentInteract)));
     }
-    // An interaction affects one thing: the one in front or, if there is none, the carried one.
+    // An interaction affects one object: the one in front or, if there is none, the carried one.
     let mut put_down_now = None;
     let hand_target = (intent.interact && state.has_things)
         .then(|| {
@@ -91,7 +91,7 @@ pub(super) fn apply_stimuli(
         if let Some((index, place)) = put_down_now {
             put_down(world, state, views, index, place);
             let sim = SimRef { world, state, views };
-            // Being near the thing after putting it down is not an event.
+            // Being near the object after putting it down is not an event.
             state.objects[index as usize].in_range = is_in_range(sim, index as usize);
             step.events.push(Event {
                 object: index as usize,

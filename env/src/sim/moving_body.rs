@@ -12,7 +12,7 @@ use super::slide::{Obstacles, SKIN};
 /// Maximum displacement in metres that makes room for a body that turns beside a wall.
 const TURN_ROOM: f64 = 0.25;
 
-/// Number of bodies around a position from which on it counts as occupied.
+/// Number of bodies near a position at which it counts as occupied without further tests.
 const MAX_NEARBY: usize = 256;
 
 /// Cost of testing two shapes against each other, in queries.
@@ -86,7 +86,7 @@ impl CollisionWorld {
             let count = scratch.numbers.len();
             scratch.indices.clear();
             scratch.indices.extend(0..count as u32);
-            // Capacity for what most paths meet, so that steps do not allocate.
+            // Enough capacity for most paths, so that steps do not allocate.
             while scratch.widened.len() < count.max(16) {
                 scratch.widened.push(Footprint::with_capacity());
             }

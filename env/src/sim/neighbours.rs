@@ -34,8 +34,8 @@ const MIN_OVERLAP_LIMIT: u64 = 1_500;
 const MAX_PAIRS: u64 = 60_000;
 const MIN_PAIR_LIMIT: u64 = 4_000;
 
-/// Maximum number of bodies checked around one body, that it may meet, and that it overlaps. A body held by many others at once
-/// would cost more than its share.
+/// Maximum number of bodies that are checked around one body, that it may meet, and that it overlaps. A body in contact with
+/// many others at once would cost more than its share.
 const MAX_QUERIES_PER_BODY: usize = 8192;
 const MAX_ENCOUNTERS_PER_BODY: usize = 1024;
 const MAX_OVERLAPS_PER_BODY: usize = 256;

@@ -41,12 +41,12 @@ impl Environment {
         Ok(())
     }
 
-    /// The indices of the carried things to show in images of the agent's view; empty unless the world shows them.
+    /// The indices of the carried objects to show in images of the agent's view; empty unless the world shows them.
     pub(crate) fn shown_carried(&self) -> &[u32] {
         carried_to_show(&self.world, &self.state)
     }
 
-    /// If the world shows carried things, draws them at the bottom of the target's colour image, which shows the agent's view.
+    /// If the world shows carried objects, draws them at the bottom of the target's colour image, which shows the agent's view.
     /// Other images stay unchanged.
     pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
         renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
@@ -90,7 +90,7 @@ impl Environment {
     }
 }
 
-/// The carried things, if the world shows them.
+/// The carried objects, if the world shows them.
 fn carried_to_show<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
     if world.agent_params.show_carried {
         state.carried()

@@ -62,7 +62,7 @@ fn try_respawn(
         if !budget.take(queries_per_position) {
             return false;
         }
-        // Every object that respawns has its random numbers, created with the state or when the object was spawned.
+        // Every object that respawns has its own random numbers, created with the state or when the object was spawned.
         let Some(rng) = state.rng_of(index) else { return true };
         let [out, around] = rng.draw_position().map(|unit| unit as f32);
         let distance = respawn.radius as f32 * out.sqrt();

@@ -2,7 +2,7 @@
 
 use driftworld_spec::Object;
 
-/// The objects of a sequence in order, and how many of them, from the first one on, have been collected.
+/// The objects of a sequence in order, and the position of the first one that has not been collected.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Order number and object, in ascending order.

@@ -106,7 +106,7 @@ pub(crate) struct SimState {
     pub(super) doors: Vec<DoorState>,
     /// The objects that the agent carries, in the order in which it picked them up.
     pub(super) carried: Vec<u32>,
-    /// Whether any object is a door, a switch or a portable thing.
+    /// Whether any object is a door, a switch or portable.
     pub(crate) has_things: bool,
     /// Duration of a time step in seconds.
     time_step: f64,

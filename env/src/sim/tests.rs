@@ -90,7 +90,8 @@ fn max_queries_per_step(world: WorldDraft) -> u64 {
     max
 }
 
-/// Upper bound on the queries of a time step with `count` objects of any kind; the constant covers sixty physics steps.
+/// Upper bound on the queries of a time step with `count` objects of any kind. The constant term covers pushed bodies, in up to
+/// sixty physics steps.
 fn bound(count: usize) -> u64 {
     let each = (budget::PER_MOVER + budget::PER_RETURN + 4) * count as u64;
     budget::AGENTS + budget::MOVERS + budget::RETURNS + 1_000_000 + each

@@ -1,4 +1,4 @@
-//! Reactions of doors, switches and portable things to stimuli.
+//! Reactions of doors, switches and portable objects to stimuli.
 
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
@@ -11,7 +11,7 @@ use super::sim_ref::SimRef;
 use super::state::SimState;
 use super::views::Views;
 
-/// Gap in metres between the agent's body and a thing that it puts down. The thing is within reach, but not touched.
+/// Gap in metres between the agent's body and an object that it puts down. The object is within reach, but not touched.
 const PUT_DOWN_GAP: f32 = 0.1;
 
 /// Whether an object can react to a stimulus by opening, closing, switching doors, or being picked up.
@@ -60,7 +60,7 @@ fn is_locked(world: &World, state: &SimState, index: usize) -> bool {
     key.is_some_and(|key| !state.is_unlocked(index) && carried_with_tag(world, state, key).is_none())
 }
 
-/// The position of the first carried thing with a tag.
+/// The index, in the list of carried objects, of the first one with a tag.
 fn carried_with_tag(world: &World, state: &SimState, tag: &str) -> Option<usize> {
     let tag_of = |index: u32| world.objects[index as usize].tag.as_deref();
     state.carried.iter().position(|index| tag_of(*index) == Some(tag))
@@ -83,7 +83,7 @@ pub(crate) fn reacting_object(sim: SimRef, reached: &[u32]) -> Option<u32> {
         .map(|(index, _)| index)
 }
 
-/// The thing that an interaction puts down if nothing reacts to it, and its position. This is the thing picked up last,
+/// The object that an interaction puts down if nothing reacts to the interaction, and where: the object picked up last,
 /// directly in front of the agent. `None` if nothing is carried or there is no room.
 pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let index = *sim.state.carried.last()?;
@@ -127,7 +127,7 @@ pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut View
             views.sync_object(index, object, own);
             state.carried.push(index as u32);
         }
-        // Putting down is the agent's action, not a thing's reaction.
+        // Putting down is the agent's action, not an object's reaction.
         Effect::PutDown => {}
     }
 }
@@ -166,7 +166,7 @@ fn unlock(world: &World, state: &mut SimState, index: usize) {
     }
 }
 
-/// Puts down a carried thing.
+/// Puts down a carried object.
 pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, index: u32, place: [f32; 2]) {
     state.carried.retain(|carried| *carried != index);
     let index = index as usize;
@@ -178,7 +178,7 @@ pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, i
     }
 }
 
-/// Moves carried things along with the agent.
+/// Moves carried objects along with the agent.
 pub(super) fn follow(state: &mut SimState) {
     for index in &state.carried {
         state.objects[*index as usize].position = state.agent.position;

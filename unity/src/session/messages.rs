@@ -222,7 +222,7 @@ mod tests {
         let json = r#"{"a":"20° – 𝄞\n"}"#;
         let text = ascii(json);
         assert!(text.is_ascii(), "{text}");
-        let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("it is still JSON");
+        let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("the text is still valid JSON");
         assert_eq!(read(&text), read(json));
     }
 }

@@ -325,8 +325,8 @@ impl Session {
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
 
-    /// Checks that the end of an episode and the start of the next fit into one message. As images sent as floats always have the
-    /// same size, this raises the error at the start and not during training.
+    /// Checks that the end of an episode and the start of the next fit into one message. Images sent as floats always have the
+    /// same size, so this check reports the error at the start instead of during training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
         let can_end = self.album.is_some()

@@ -45,7 +45,7 @@ mod tests {
     fn engine_settings_are_read_as_clients_write_them() {
         let words = |words: &[i32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
         let check = |bytes: &[i32], name: &str, begins: &str| {
-            let (found, remark) = engine_setting(&words(bytes)).expect("the setting is one");
+            let (found, remark) = engine_setting(&words(bytes)).expect("the setting is valid");
             assert_eq!(found, name);
             assert!(remark.starts_with(&format!("{begins}: ignored")), "{remark}");
         };

@@ -64,7 +64,9 @@ mod tests {
     #[test]
     fn payload_is_never_read_past_its_end() {
         let check = |bytes: &[u8], expected: &str| {
-            let error = Payload::new(bytes).text().expect_err("the text is not there");
+            let error = Payload::new(bytes)
+                .text()
+                .expect_err("the payload contains no valid text");
             assert!(error.starts_with(expected), "{error}");
         };
         check(

@@ -106,7 +106,7 @@ fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let (ended, seen) = observe_once(&arguments, folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    assert_eq!(seen.expect("a world is loaded").shape, [84, 84, 3]);
+    assert_eq!(seen.expect("the client observed the world").shape, [84, 84, 3]);
     let lines: Vec<&str> = ended.stderr.lines().collect();
     assert_eq!(
         lines[..2],
@@ -142,7 +142,7 @@ fn world_file_of_either_format_is_the_initial_world() {
     for file in ["ours.json", "theirs.json"] {
         let (ended, seen) = observe_once(&["--world", file], folder.path());
         assert_eq!(ended.code, Some(0), "{ended:?}");
-        let seen = seen.expect("a world is loaded");
+        let seen = seen.expect("the client observed the world");
         assert_eq!(
             (seen.shape, seen.state),
             (vec![16, 16, 3], vec![0.0, 3.0, 4.0, 0.0, 0.0, 0.0]),
@@ -274,7 +274,10 @@ fn maps_file_replaces_the_built_in_layouts() {
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let (ended, own) = observe_once(&["--world=world.json", "--maps=maps.json"], folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let (built_in, own) = (built_in.expect("it is seen"), own.expect("it is seen"));
+    let (built_in, own) = (
+        built_in.expect("the client observed the world"),
+        own.expect("the client observed the world"),
+    );
     assert_eq!(built_in.state, own.state);
     assert_ne!(built_in.picture, own.picture);
 }
@@ -286,7 +289,7 @@ fn remarks_are_appended_to_the_log_file() {
     fs::write(&log, "before\n").expect("the folder can be written");
     let (ended, _) = observe_once(&["-logFile", "run.log", "-adapter"], folder.path());
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    let output = fs::read_to_string(&log).expect("it is there");
+    let output = fs::read_to_string(&log).expect("the log file exists");
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(
         lines[..2],
@@ -299,7 +302,7 @@ fn remarks_are_appended_to_the_log_file() {
     // Errors go to the log file as well.
     let ended = Executable::start(&["-logFile", "run.log", "--world", "none.json"], folder.path()).ended();
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""));
-    let output = fs::read_to_string(&log).expect("it is there");
+    let output = fs::read_to_string(&log).expect("the log file exists");
     assert!(
         output
             .ends_with("driftworld-unity: --world none.json: cannot be read: No such file or directory (os error 2)\n"),
@@ -337,14 +340,19 @@ fn broken_terminal_does_not_change_the_exit_status() {
         ("--wait=soon", 2),
         ("--world=none.json", 1),
     ] {
-        let full = || fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+        let full = || {
+            fs::File::options()
+                .write(true)
+                .open("/dev/full")
+                .expect("Linux has /dev/full")
+        };
         let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld-unity"))
             .arg(argument)
             .stdout(full())
             .stderr(full())
             .spawn()
             .expect("the executable has been built");
-        let status = child.wait().expect("our own process can be stopped");
+        let status = child.wait().expect("the process can be waited for");
         assert_eq!(status.code(), Some(expected), "{argument}");
     }
 }

@@ -16,7 +16,7 @@ fn check(last: Vec<Answer>, expected: &str) {
     assert_eq!(ended.code, Some(1), "{ended:?}");
     let last_line = ended.stderr.lines().last().unwrap_or_default();
     assert_eq!(last_line, format!("driftworld-unity: {expected}"));
-    let reply = client.calls().pop().expect("a client connected").header;
+    let reply = client.calls().pop().expect("the executable made a call").header;
     let header = HeaderProto {
         status: 500,
         message: expected.to_owned(),
@@ -175,7 +175,7 @@ fn too_large_observations_are_refused_with_helpful_advice() {
     let text = last_line.strip_prefix("driftworld-unity: ").unwrap_or_default();
     assert!(text.starts_with("observation: 94") && text.contains(" bytes in a message, of which clients accept 4194304; reset to a smaller observation_size, or leave out --raw-observations"), "{ended:?}");
     let reply = client.calls().pop().and_then(|call| call.header);
-    assert_eq!(reply.expect("the server replied").message, text);
+    assert_eq!(reply.expect("the last call has a header").message, text);
 
     let (_folder, small) = world(256);
     for arguments in [

@@ -10,8 +10,8 @@ use super::{session, start};
 use crate::recorded::{RELEASES, messages};
 
 fn input(bytes: &[u8]) -> UnityInputProto {
-    let message = UnityMessageProto::decode(bytes).expect("clients send messages");
-    message.unity_input.expect("clients say something")
+    let message = UnityMessageProto::decode(bytes).expect("the recorded message is valid");
+    message.unity_input.expect("every recorded message has an input")
 }
 
 /// The message's bytes, with every time replaced by a fixed one.
@@ -47,15 +47,15 @@ fn executable_sends_the_sessions_answers() {
         assert_eq!(greeting.unity_output, Some(Session::greeting()), "{release}");
         let who = input(&recorded[0].1)
             .rl_initialization_input
-            .expect("it says who it is");
-        twin.begin(&who).expect("the client is known");
+            .expect("the first message identifies the client");
+        twin.begin(&who).expect("the client's version is supported");
         assert_eq!(
             client.call().unity_output,
             Some(UnityOutputProto::default()),
             "{release}"
         );
         for (about, bytes) in &recorded[1..recorded.len() - 1] {
-            let command = input(bytes).rl_input.expect("it says what to do");
+            let command = input(bytes).rl_input.expect("the message has a command");
             let Ok(Turn::Output(expected)) = twin.answer(&command) else {
                 panic!("{release}: {about}")
             };

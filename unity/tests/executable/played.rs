@@ -1,4 +1,4 @@
-//! [`Client`]: simulates a Python client, which is a gRPC server, at the byte level, so that it can also send invalid messages.
+//! [`Client`]: simulates a Python client (a gRPC server) at the byte level, so that it can also send invalid messages.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
@@ -72,7 +72,7 @@ impl Client {
             + 'static,
         S::Future: Send + 'static,
     {
-        let port = listener.local_addr().expect("it is bound").port();
+        let port = listener.local_addr().expect("the listener is bound").port();
         let (sender, calls) = channel();
         let (leave, left) = oneshot::channel();
         let service = service(answers.into_iter().collect(), sender);
@@ -80,15 +80,17 @@ impl Client {
             let runtime = tokio::runtime::Builder::new_current_thread()
                 .enable_all()
                 .build()
-                .expect("there is a network");
+                .expect("the runtime can be created");
             runtime.block_on(async {
-                listener.set_nonblocking(true).expect("tokio wants it so");
-                let listener = tokio::net::TcpListener::from_std(listener).expect("it is bound");
+                listener
+                    .set_nonblocking(true)
+                    .expect("the listener can be made non-blocking");
+                let listener = tokio::net::TcpListener::from_std(listener).expect("the listener is bound");
                 let serving = Server::builder()
                     .add_service(service)
                     .serve_with_incoming(TcpIncoming::from(listener));
                 tokio::select! {
-                    ended = serving => ended.expect("the server is served"),
+                    ended = serving => ended.expect("the server runs without errors"),
                     _ = left => {}
                 }
             });
@@ -107,15 +109,15 @@ impl Client {
         let bytes = self
             .calls
             .recv_timeout(Duration::from_mins(1))
-            .expect("a client connects");
-        UnityMessageProto::decode(bytes.as_slice()).expect("what is said is a message")
+            .expect("the executable makes a call");
+        UnityMessageProto::decode(bytes.as_slice()).expect("every call carries a valid message")
     }
 
     /// All calls since the last query.
     pub(crate) fn calls(&self) -> Vec<UnityMessageProto> {
         let calls = self.calls.try_iter();
         calls
-            .map(|bytes| UnityMessageProto::decode(bytes.as_slice()).expect("what is said is a message"))
+            .map(|bytes| UnityMessageProto::decode(bytes.as_slice()).expect("every call carries a valid message"))
             .collect()
     }
 
@@ -227,7 +229,11 @@ impl UnaryService<Vec<u8>> for Played {
     fn call(&mut self, request: Request<Vec<u8>>) -> Self::Future {
         // The test may have dropped the other end.
         let _ = self.calls.send(request.into_inner());
-        let answer = self.answers.lock().expect("nobody panics here").next();
+        let answer = self
+            .answers
+            .lock()
+            .expect("no thread panics while it holds the lock")
+            .next();
         Box::pin(async move {
             match answer {
                 Some(Answer::Bytes(bytes)) => Ok(Response::new(bytes)),

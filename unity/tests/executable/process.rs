@@ -35,8 +35,8 @@ impl Executable {
             .stderr(Stdio::piped())
             .spawn()
             .expect("the executable has been built");
-        let stdout = read_in_thread(child.stdout.take().expect("it is piped"));
-        let stderr = read_in_thread(child.stderr.take().expect("it is piped"));
+        let stdout = read_in_thread(child.stdout.take().expect("the stream is piped"));
+        let stderr = read_in_thread(child.stderr.take().expect("the stream is piped"));
         Self { child, stdout, stderr }
     }
 
@@ -44,7 +44,7 @@ impl Executable {
     pub(crate) fn ended(mut self) -> Ended {
         let stderr = self.stderr.recv_timeout(PATIENCE).expect("the process exits");
         let stdout = self.stdout.recv_timeout(PATIENCE).expect("the process exits");
-        let code = self.child.wait().expect("our own process can be stopped").code();
+        let code = self.child.wait().expect("the process can be waited for").code();
         Ended { code, stdout, stderr }
     }
 }

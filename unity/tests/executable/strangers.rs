@@ -10,7 +10,7 @@ use super::process::{Ended, Executable};
 use super::{session, start};
 
 fn run(listener: &TcpListener, arguments: &[&str]) -> Executable {
-    let port = listener.local_addr().expect("it is bound").port().to_string();
+    let port = listener.local_addr().expect("the listener is bound").port().to_string();
     let folder = std::env::temp_dir();
     Executable::start(&[&["--mlagents-port", &port], arguments].concat(), &folder)
 }
@@ -25,7 +25,7 @@ fn assert_no_client(ended: &Ended, reason: &str) {
 #[test]
 fn waiting_without_a_server_times_out() {
     let listener = free_port();
-    let port = listener.local_addr().expect("it is bound").port().to_string();
+    let port = listener.local_addr().expect("the listener is bound").port().to_string();
     drop(listener);
     let ended = Executable::start(&["--wait", "0.2", "--mlagents-port", &port], &std::env::temp_dir()).ended();
     assert_eq!(ended.code, Some(3), "{ended:?}");
@@ -40,7 +40,7 @@ fn waiting_without_a_server_times_out() {
 #[test]
 fn client_that_starts_later_is_found() {
     let listener = free_port();
-    let port = listener.local_addr().expect("it is bound").port();
+    let port = listener.local_addr().expect("the listener is bound").port();
     drop(listener);
     let executable = Executable::start(&["--mlagents-port", &port.to_string()], &std::env::temp_dir());
     let listener = TcpListener::bind(("127.0.0.1", port)).expect("the port is still free");
@@ -75,11 +75,13 @@ fn server_with_a_different_service_is_not_a_client() {
 fn web_server_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
-    let (mut stream, _) = listener.accept().expect("a client connects");
-    stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
+    let (mut stream, _) = listener.accept().expect("the executable connects");
+    stream
+        .read_exact(&mut [0; 24])
+        .expect("the executable sends the HTTP/2 preface");
     stream
         .write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n")
-        .expect("somebody listens");
+        .expect("the executable is still connected");
     drop(stream);
     let ended = executable.ended();
     assert_no_client(&ended, "");
@@ -89,9 +91,11 @@ fn web_server_is_not_a_client() {
 fn listener_that_hangs_up_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
-    let (mut stream, _) = listener.accept().expect("a client connects");
+    let (mut stream, _) = listener.accept().expect("the executable connects");
     // The call has begun.
-    stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
+    stream
+        .read_exact(&mut [0; 24])
+        .expect("the executable sends the HTTP/2 preface");
     drop(stream);
     let ended = executable.ended();
     assert_no_client(&ended, "");

@@ -10,11 +10,11 @@ pub(crate) fn messages(release: &str) -> Vec<(String, Vec<u8>)> {
     let path = format!("{}/tests/golden/client_{release}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("the conversation is committed");
     let document: Value = serde_json::from_str(&text).expect("the conversation is JSON");
-    let list = document["messages"].as_array().expect("it has messages");
+    let list = document["messages"].as_array().expect("the conversation has messages");
     list.iter()
         .map(|message| {
-            let about = message["about"].as_str().expect("each says what it is");
-            let digits = message["hex"].as_str().expect("each has its bytes");
+            let about = message["about"].as_str().expect("each message has a description");
+            let digits = message["hex"].as_str().expect("each message has its bytes");
             (about.to_owned(), bytes(digits))
         })
         .collect()

@@ -25,7 +25,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     }
     let mut remaining = &bytes[12..];
     let mut chunks = Vec::new();
-    // Only the first two chunks have a meaning; others may follow.
+    // glTF defines only the first two chunks; others may follow and are ignored.
     while chunks.len() < 2 && !remaining.is_empty() {
         let (kind, data, rest) = chunk(remaining, chunks.len())?;
         chunks.push((kind, data));

@@ -70,7 +70,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is not glTF 2.0 is version 1, whose meshes are an object instead of a list. Keeps nothing in memory.
+/// Whether JSON that is not glTF 2.0 is version 1, in which `meshes` is an object instead of a list. Stores no parsed values.
 fn is_version_1(json: &str) -> bool {
     gltf_json::deserialize::from_str::<Version1>(json).is_ok()
 }

@@ -30,7 +30,7 @@ pub(super) struct ReadPrimitive {
 }
 
 impl Reading<'_, '_> {
-    /// Reads a primitive; `None` for points or lines. `used` is the number of vertices and triangles of the scene so far.
+    /// Reads a primitive; `None` for points or lines. `used` holds the numbers of vertices and triangles in the scene so far.
     pub(super) fn primitive(
         &mut self,
         primitive: &Primitive,

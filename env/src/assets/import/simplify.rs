@@ -136,7 +136,7 @@ mod tests {
             levels(&corners, &[triangles])
         };
         assert!(!fan(1_000).is_empty());
-        assert!(fan(200_000).is_empty(), "simplifying would take a quarter of a minute");
+        assert!(fan(200_000).is_empty(), "simplifying would take about 15 seconds");
     }
 
     #[test]

@@ -166,7 +166,7 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     })
 }
 
-/// Linear light of each byte.
+/// The linear light value of each sRGB byte.
 static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f32 / 255.0)));
 
 impl Texture<'_> {

@@ -1,4 +1,5 @@
-//! Collects the instances of one tile: one per visible object, and one per triangle of panels that are not drawn by formula.
+//! Collects the instances of one tile: one per visible object, and one per triangle of panels that are not computed
+//! analytically.
 
 use std::sync::Arc;
 

@@ -118,7 +118,7 @@ impl GpuRenderer {
         }])
     }
 
-    /// Draws carried things onto the colour image, on the CPU.
+    /// Draws carried objects onto the colour image, on the CPU.
     pub(super) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }

@@ -2,7 +2,7 @@
 
 use super::{Lanes, first, first_mut, operations};
 
-/// Four lanes that need no particular instructions.
+/// Four lanes that need no special instructions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;
 
