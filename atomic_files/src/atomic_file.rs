@@ -50,7 +50,7 @@ impl AtomicFile {
     /// unchanged.
     ///
     /// # Errors
-    /// As [`create`](Self::create).
+    /// The errors of [`create`](Self::create).
     pub fn create_in_place_of_links(path: &Path) -> io::Result<Self> {
         Self::beside(path.to_owned())
     }
@@ -132,7 +132,7 @@ impl Write for AtomicFile {
 /// Writes a whole file with [`AtomicFile`].
 ///
 /// # Errors
-/// As [`AtomicFile::create`] and [`AtomicFile::commit`].
+/// The errors of [`AtomicFile::create`] and [`AtomicFile::commit`].
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = AtomicFile::create(path)?;
     file.write_all(bytes)?;

@@ -125,7 +125,7 @@ pub enum EnvError {
         /// Images of the batch.
         expected: String,
     },
-    /// A file of recordings is damaged or truncated, or not a file of recordings.
+    /// A recordings file is damaged or truncated, or the file is not a recordings file.
     #[error("line {line}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     Recording {
         /// The line, from 1.

@@ -12,11 +12,11 @@ const CORNERS: u32 = 64;
 /// lie on top.
 const LIFT: f32 = 1e-4;
 
-/// Additional height of each patch over the one before, as a fraction of the lift, and the number of patches that get one.
+/// Additional height of each patch over the one before, as a fraction of the lift, and the maximum number of such steps.
 const STEP: (f32, usize) = (0.1, 100);
 
-/// Distances in metres from the arena to the edges of the two bands of ground around it. A single band would be inexact nearby,
-/// because its outer corners are so distant.
+/// Distances in metres from the arena to the edges of the two bands of ground around it. A single band would be
+/// inaccurate nearby, because its outer corners are so distant.
 const BAND_EDGES: [f32; 3] = [0.0, 500.0, 50_000.0];
 
 /// Height of that ground in metres.

@@ -72,7 +72,7 @@ pub fn check(path: &Path) -> Result<(), FileError> {
 /// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
-/// As [`open`]. [`FileError::TooLarge`] also if the file grows beyond the limit while it is read.
+/// The errors of [`open`]; [`FileError::TooLarge`] also if the file grows beyond the limit while it is read.
 ///
 /// # Example
 /// ```
@@ -102,7 +102,7 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// Reads a UTF-8 text file of at most `limit` bytes, and drops the byte order mark that some editors write.
 ///
 /// # Errors
-/// As [`read`]; [`FileError::NotText`] with the position of the first byte that is not UTF-8.
+/// The errors of [`read`]; [`FileError::NotText`] with the position of the first byte that is not UTF-8.
 pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     let mut text = String::from_utf8(read(path, limit)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

@@ -1,5 +1,5 @@
 //! Turns fuzzer bytes into JSON: the bytes themselves, or a known document with the edits that the bytes describe, because random
-//! bytes seldom get past a parser.
+//! bytes rarely get past a parser.
 
 use std::collections::BTreeSet;
 

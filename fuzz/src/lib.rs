@@ -1,8 +1,8 @@
-//! Fuzz targets, one per kind of document, file and message that Driftworld reads. Each checks a law: properties that hold for
-//! any input bytes.
+//! Fuzz targets, one per kind of document, file and message that Driftworld reads. Each checks properties that must
+//! hold for any input bytes.
 //!
-//! `tests/replay.rs` checks the laws on the seeds and on small changes to them; `scripts/fuzz.sh` lets libFuzzer search for bytes
-//! that break them.
+//! `tests/replay.rs` runs the checks on the seeds and on small changes to them; `scripts/fuzz.sh` lets libFuzzer search for bytes
+//! that make a check fail.
 
 mod agent_script;
 mod edited;
@@ -21,12 +21,12 @@ mod settings;
 mod task;
 mod world;
 
-/// A fuzz target: a law, and the folder with its seed inputs.
+/// A fuzz target: a check, and the folder with its seed inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// Name of the folder with its seed inputs.
     pub name: &'static str,
-    /// The law: panics if the bytes break it.
+    /// The check; panics if a property does not hold for the bytes.
     pub law: fn(&[u8]),
 }
 

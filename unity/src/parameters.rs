@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn numbers_keep_their_decimal_digits() {
         let mut parameters = Parameters::default();
-        set(&mut parameters, "Time_Step", 0.1).expect("names ignore case");
+        set(&mut parameters, "Time_Step", 0.1).expect("upper and lower case are equivalent in names");
         let mut world = WorldDraft::default();
         parameters.apply(&mut world);
         assert_eq!(world.agent_params.time_step, 0.1);

@@ -47,7 +47,7 @@ pub struct UnityRlCapabilitiesProto {
     /// Actions with continuous and discrete numbers, and `action_spec`.
     #[prost(bool, tag = "4")]
     pub hybrid_actions: bool,
-    /// Training analytics for the engine's maker.
+    /// Training analytics for Unity Technologies.
     #[prost(bool, tag = "5")]
     pub training_analytics: bool,
     /// Observations of variable length.

@@ -8,7 +8,7 @@ use driftworld_env::{Recording, RecordingLines, RecordingReader};
 
 use crate::error::UnityError;
 
-/// A file of recordings opened for appending. A client that starts this program repeatedly extends the same file.
+/// A recordings file, opened for appending. A client that starts this program repeatedly extends the same file.
 #[derive(Debug)]
 pub struct RecordingFile {
     path: PathBuf,

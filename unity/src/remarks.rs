@@ -31,7 +31,7 @@ impl Remarks {
         self.make_once(about, remark, remark);
     }
 
-    /// Makes a remark, unless one about the same thing was made before.
+    /// Makes a remark, unless one about the same subject was made before.
     pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: &str) {
         let key = (about, thing.to_owned());
         let count = self.made.iter().filter(|(kind, _)| *kind == about).count();

@@ -230,8 +230,10 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
         collider: ColliderKind::Cylinder,
         main: None,
     };
-    let imported = LibraryModel::from_gltf(&bytes, &options, &mut |_| unreachable!("the file names no other"))
-        .expect("the example is a valid model");
+    let imported = LibraryModel::from_gltf(&bytes, &options, &mut |_| {
+        unreachable!("the model refers to no other file")
+    })
+    .expect("the example is a valid model");
     let mut library = Library::default();
     library
         .insert(imported.model)

@@ -13,7 +13,7 @@ const TURN: f64 = 360.0 / NUM_HEADINGS as f64;
 pub struct StateGrid {
     /// Side of a cell in metres.
     pub cell: f64,
-    /// Numbers of columns and rows.
+    /// Number of columns, and number of rows.
     pub cells: [usize; 2],
 }
 

@@ -21,7 +21,7 @@ pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
 /// Maximum duration of a macro action in seconds.
 pub const MAX_MACRO_SECONDS: f64 = 60.0;
 
-/// Settings for turning a world into a finite one.
+/// Settings for computing a [`WorldAbstraction`].
 #[derive(Clone, Debug)]
 pub struct Abstraction {
     /// Side of a cell in metres, above 0; 2 by default.
@@ -50,12 +50,12 @@ impl Default for Abstraction {
 ///
 /// A state is a cell and a heading. Each action starts with everything else as at the start of the world: every object is
 /// present, pays its initial reward, and begins its motion. So the tables reflect walls, the agent's body and speed, the time
-/// step, the duration of actions, the action model, solid and pushed objects, and rewards. Whatever an action takes, pushes or
-/// moves is reset after it. Step and time limits are ignored. Rules about the return count only the reward of this one action.
-/// Uncertain rewards pay their mean.
+/// step, the duration of actions, the action model, solid and pushed objects, and rewards. Objects that an action collects,
+/// pushes or moves are reset afterwards. Step and time limits are ignored. Rules about the return count only the reward of this
+/// one action. Uncertain rewards pay their mean.
 ///
-/// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is performed at the agent's full speed, with the nearest row if the
-/// world has an action table. An agent that cannot interact stands still instead.
+/// Actions are in the order listed at [`NUM_MACRO_ACTIONS`]; each is performed at the agent's full speed, with the nearest row
+/// if the world has an action table. An agent that cannot interact stands still instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldAbstraction {
     /// Maps between states and poses.

@@ -23,7 +23,7 @@ fn abstracted(change: impl FnOnce(&mut WorldDraft)) -> WorldAbstraction {
 }
 
 #[test]
-fn moving_ahead_lands_where_the_agent_walks() {
+fn actions_lead_to_the_poses_that_the_agent_reaches() {
     let found = abstracted(|_| ());
     assert_eq!((found.states, found.actions), (801, 6));
     let from = found.grid.state_at([1.0, -3.0], 0.0) * found.actions;

@@ -59,7 +59,7 @@ impl Asset {
         }
     }
 
-    /// Number of triangles of each level of detail, and its largest error in metres at scale 1: from the full model to the coarsest.
+    /// Number of triangles of each level of detail, and its largest error in metres at scale 1; the full model comes first.
     pub fn levels(&self) -> impl Iterator<Item = (usize, f32)> {
         self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
@@ -155,11 +155,11 @@ pub enum ColliderShape {
         /// Half of the height.
         half_height: f32,
     },
-    /// An upright cylinder with a half ball at each end, standing on the lower one.
+    /// An upright cylinder with a hemisphere at each end, standing on the lower one.
     Capsule {
         /// Radius.
         radius: f32,
-        /// Half of the height between the centres of the half balls.
+        /// Half of the height between the centres of the hemispheres.
         half_height: f32,
     },
     /// The convex hull of these points, in the asset's frame.

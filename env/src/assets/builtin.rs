@@ -13,7 +13,7 @@ struct Models {
     read: OnceLock<Vec<(String, Arc<Asset>)>>,
 }
 
-/// An array of classes; each file is named after its class, with this ending.
+/// An array of classes; each file name is the class's name with this suffix.
 macro_rules! models {
     ($ending:literal: $($class:ident)+) => {
         [$(Models {

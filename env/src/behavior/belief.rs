@@ -1,5 +1,5 @@
 //! [`Belief`]: an expert's beliefs about a world that is not its own. The objects and positions are the true ones, the rewards
-//! are those of their counterparts at home.
+//! are those of their counterparts in the expert's own world.
 
 use driftworld_spec::{Object, Stimulus, World};
 
@@ -10,7 +10,8 @@ use crate::sim::{Action, Environment, Step};
 /// A world as an expert of another world believes it to be, synchronised with the state of the true one.
 pub(super) struct Belief {
     environment: Environment,
-    /// For each object whose effects are believed wrongly, the stimuli that are believed to use it up; empty for the others.
+    /// For each object about whose effects the expert is wrong, the stimuli that it believes to use up the object; empty for
+    /// other objects.
     false_stimuli: Vec<Vec<Stimulus>>,
     /// Whether one of those stimuli has been triggered.
     tried: Vec<bool>,
@@ -47,7 +48,7 @@ impl Belief {
     pub(super) fn at(&mut self, truth: &Environment) -> &Environment {
         self.environment.copy_state_from(truth);
         for (index, tried) in self.tried.iter_mut().enumerate() {
-            // Objects that left and came back can be tried again.
+            // Objects that disappeared and respawned can be tried again.
             *tried &= truth.objects()[index].present;
             if *tried {
                 self.environment.clear_reward(index);
@@ -95,7 +96,7 @@ fn color_distance(a: &Object, b: &Object) -> f64 {
     match (&a.color, &b.color) {
         (None, None) => 0.0,
         (Some(a), Some(b)) => squared(a.0, b.0),
-        // More than the distance of any two colours.
+        // More than the distance between any two colours.
         _ => 4.0,
     }
 }

@@ -8,11 +8,11 @@ use crate::EnvError;
 use crate::agents::{Agent, OnRailsAgent, in_space};
 use crate::sim::{Environment, Step};
 
-/// Rewards that differ by at most this are equal.
+/// Rewards that differ by at most this count as equal.
 const SAME_REWARD: f64 = 1e-9;
 
 impl Expertise {
-    /// An agent in the world `abroad` that knows only that rewards are as in one of `homes`.
+    /// An agent in the world `abroad` that knows only that its rewards are those of one of `homes`.
     ///
     /// It acts as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in which that
     /// step would have given a different reward or ending, and follows the first of the rest. If none remains, it keeps the one

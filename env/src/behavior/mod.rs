@@ -51,8 +51,8 @@ impl Expertise {
         self.finding_out(&[], world)
     }
 
-    /// Runs the expert of the world `home` in the world `abroad`, where it sees the true objects but believes in the rewards of
-    /// home.
+    /// Runs the expert of the world `home` in the world `abroad`, where it sees the true objects but expects the rewards of
+    /// `home`.
     ///
     /// Before each step the expert sees the true state of `abroad`: its map, the agent, and the present objects with their
     /// positions. It plans by the rules of `home`. It mistakes each object for the most similar one of the same class at home:

@@ -18,7 +18,7 @@ fn cube(place: [f64; 2], color: Color, reward: f64, tag: &str) -> Object {
     cube
 }
 
-/// Cubes of two colours; the first pays.
+/// Cubes of two colours: `paying` cubes have a reward of 10, `other` ones of -5.
 fn world(paying: Color, other: Color) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [30.0, 30.0];
@@ -49,7 +49,7 @@ fn expert_goes_for_the_colour_that_pays_at_home() {
     assert_eq!((own.earned, own.success), (20.0, true));
     let other = expertise.abroad(&red, &blue).expect("the expert runs");
     assert!(other.earned <= -10.0 && !other.success, "{other:?}");
-    // The order of the objects at home makes no difference.
+    // The order of the objects in the home world makes no difference.
     let mut reversed = world(RED, BLUE);
     reversed.objects.reverse();
     assert_eq!(
@@ -59,7 +59,7 @@ fn expert_goes_for_the_colour_that_pays_at_home() {
 }
 
 #[test]
-fn objects_believed_used_up_are_left_alone_after_one_try() {
+fn objects_believed_to_be_used_up_are_left_alone_after_one_try() {
     let home = checked(world(RED, BLUE));
     let mut unrewarding = world(RED, BLUE);
     unrewarding.rules.success.clear();
@@ -73,7 +73,7 @@ fn objects_believed_used_up_are_left_alone_after_one_try() {
 }
 
 #[test]
-fn class_missing_at_home_is_ignored() {
+fn objects_of_classes_unknown_at_home_are_ignored() {
     let mut barrels = world(RED, BLUE);
     for object in &mut barrels.objects {
         object.class = "barrel".to_owned();
@@ -109,7 +109,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn abroad_in_the_home_world_equals_at_home(
+    fn running_abroad_in_the_home_world_equals_running_at_home(
         places in prop::collection::vec((-13_i8..=13, -13_i8..=13), 1..8),
         rewards in prop::collection::vec((-2_i8..=3, 0_u8..4), 8),
         frame_skip in 1_u32..3,

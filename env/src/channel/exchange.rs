@@ -12,7 +12,7 @@ use super::request::{PARTS, Screenshot, categories, create, parts, remark_of, sc
 use crate::{Environment, Step, Warning};
 
 /// The server's end of the three channels. Stores which parts of the world are observed, and which remarks are wanted. The
-/// caller transports messages, provides the time, and writes screenshots. A message that is not understood is answered by an
+/// caller transports messages, provides the time, and writes screenshots. A message that is not understood is answered with an
 /// `error` and changes nothing. Tokens have the form of a UUID (version 8) and are derived from the world's hash and a count,
 /// so that the same messages always give the same answers.
 ///

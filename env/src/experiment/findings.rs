@@ -9,10 +9,10 @@ use crate::sim::Difference;
 /// The first case in which an element was found to differ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Witness {
-    /// Index of the pair of worlds, from 0; absent if the difference shows only over all pairs.
+    /// Index of the pair of worlds, from 0; absent if the difference appears only across all pairs together.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub world: Option<usize>,
-    /// The policy; absent if the difference shows without running one.
+    /// The policy; absent if the difference appears without running one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub policy: Option<Policy>,
     /// The step, from 0.

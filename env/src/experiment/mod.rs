@@ -1,4 +1,4 @@
-//! Finds out by experiments on pairs of worlds which elements of the decision process differ between two tasks.
+//! Determines, by experiments on pairs of worlds, which elements of the decision process differ between two tasks.
 //!
 //! The definitions are those of `docs/decisions/0024-elements-by-experiment.md`.
 
@@ -28,7 +28,7 @@ pub const MAX_EXPERIMENT_STEPS: u32 = 100_000;
 pub struct Experiment {
     /// Modalities of the learner's images; by default those that each world requests.
     pub modalities: Option<Vec<Modality>>,
-    /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. The agent that stands still runs for a fifth of them.
+    /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. [`Policy::Still`] runs for a fifth of them.
     pub steps: u32,
     /// Observations are compared at the first step and every this many steps after it; 25 by default, at least 1.
     pub look_every: u32,

@@ -14,7 +14,7 @@ pub enum Policy {
     Still,
     /// Acts at random, as [`RandomAgent`] does.
     Random,
-    /// Knows the map and visits what pays, as [`OnRailsAgent`] does.
+    /// Knows the map and visits the objects that pay, as [`OnRailsAgent`] does.
     Expert,
     /// Touches one object of each tag and interacts with one, regardless of rewards.
     Visitor,

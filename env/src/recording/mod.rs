@@ -20,7 +20,7 @@ use crate::sim::{Action, EndedBy};
 /// Identifies a recorded episode; unknown fields are `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EpisodeOrigin {
-    /// Index of the experience over the whole lifetime, as in the log; without a lifetime, the episode's index in its file.
+    /// Index of the experience within the whole lifetime, as in the log; without a lifetime, the episode's index in its file.
     /// From 0.
     pub experience: u64,
     /// Its block, from 0.

@@ -53,7 +53,7 @@ impl<R: BufRead> RecordingReader<R> {
     /// A reader at the first line.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] if the first line is not that of a file of recordings of this version.
+    /// [`EnvError::Recording`] if the first line is not that of a recordings file of this version.
     pub fn new(reader: R) -> Result<Self, EnvError> {
         let mut this = Self {
             reader,

@@ -23,7 +23,7 @@ const FULL_SHARE: u32 = 255;
 /// which the computation is skipped would not have been darkened anyway.
 const MIN_DARKENING: f32 = 1e-4;
 
-/// Distance in metres that marks a column without a foot.
+/// Distance in metres that stands for "nothing touches the ground or the ceiling in this column".
 const NOWHERE: f32 = 1e9;
 
 /// Everything that an image is composed of.

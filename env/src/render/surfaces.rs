@@ -299,7 +299,7 @@ fn door(x: f32, y: f32) -> [f32; 3] {
     };
     let edge = across.abs().max(up.abs() - 0.5);
     let own = match inside {
-        // Outside the door nothing is visible.
+        // Texels beside the door, which are never visible.
         _ if across.abs() > 0.5 => 0.97,
         _ if edge > 0.482 => 0.62,
         0.0..0.04 => rim,
@@ -341,7 +341,7 @@ mod tests {
 
     fn all() -> [Surface; 9] {
         let names = r#"["stone", "plaster", "cobbles", "noise", "brick", "plank", "tile", "stripes", "checker"]"#;
-        serde_json::from_str(names).expect("the names are surfaces")
+        serde_json::from_str(names).expect("every name is a surface")
     }
 
     /// The mean at every level is 1, and the coarsest level has no pattern, so that from a distance a surface has its plain

@@ -13,7 +13,7 @@ use super::groups::{GHOST, SOLID};
 /// Maximum gap that counts as a touch, in metres; slightly more than the skin.
 const TOUCH: f64 = 0.03;
 
-/// Maximum gap at which a contact continues, in metres. Leaving a range takes the same distance beyond its edge.
+/// Maximum gap at which a contact continues, in metres. An object's range is left at the same distance beyond its edge.
 pub(super) const RELEASE: f64 = 0.25;
 
 impl CollisionWorld {

@@ -8,7 +8,7 @@ use super::footprint::Point;
 pub(super) struct Gap {
     /// Distance in metres; below 0 inside.
     pub(super) distance: f64,
-    /// Direction of the shortest way out, or farther away: a unit vector away from the footprint.
+    /// Unit vector that points straight away from the footprint; inside it, along the shortest way out.
     pub(super) out: Point,
 }
 

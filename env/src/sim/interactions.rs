@@ -155,7 +155,7 @@ fn update_contacts(
     }
     contacts.sort_unstable();
     let stays = |index: &u32| {
-        // A newly met object that has since moved on was in contact after the agent's motion.
+        // A newly touched object that moved in this time step counts as in contact after the agent's motion.
         let is_new = triggered.binary_search_by_key(index, |(other, _)| *other).is_ok();
         let has_moved = || {
             moved
@@ -227,7 +227,7 @@ fn trigger(
         0.0
     };
     let gives_energy = destroyed || pays && !(once && own.collected);
-    // An object that pays nothing takes its turn in a sequence by reacting.
+    // Reacting also advances a sequence, even if the object pays nothing.
     own.collected |= pays || destroyed || (is_moved && object.order.is_some());
     own.present = !destroyed;
     if pays && once {
@@ -267,7 +267,7 @@ fn is_within(sim: SimRef, index: usize, reach: f64) -> bool {
     is_covered(sim, index, x * x + y * y, reach)
 }
 
-/// Whether `reach` covers a distance on the ground, given as its square.
+/// Whether an object is within `reach` at a distance on the ground, given as its square.
 fn is_covered(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
     if reach <= 0.0 || !sim.objects()[index].present {
         return false;

@@ -82,7 +82,7 @@ impl Mover {
         let max_turn = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
         let heading_deg = (view.heading_deg + turn.clamp(-max_turn, max_turn)).rem_euclid(360.0);
         let mut metres = object.speed as f32 * view.seconds;
-        // Stops at waypoints instead of overshooting; fleeing and hunting have no end point.
+        // Stops at waypoints instead of overshooting them; objects that flee or hunt have no waypoints.
         if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
             metres = metres.min(length(wanted));
             // Slows down while facing elsewhere, so that it does not circle around a waypoint towards which it cannot turn in time.

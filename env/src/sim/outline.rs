@@ -48,7 +48,7 @@ impl Outline {
                 whole: Footprint::rectangle([scaled(*x), scaled(*y)]),
             },
             ColliderShape::Cylinder { radius, .. } => Self::disc(scaled(*radius) as f32),
-            // Both have a half ball at the bottom, which a low agent touches below its centre.
+            // Both have a hemisphere at the bottom, which a low agent touches below its centre.
             ColliderShape::Ball { radius } | ColliderShape::Capsule { radius, .. } => {
                 let radius = scaled(*radius);
                 let below = (radius - agent_height).max(0.0);
@@ -173,7 +173,7 @@ mod tests {
         let tent = Outline::of(&ColliderShape::Hull { points: points.clone() }, 1.0, 1.0);
         let [low, whole] = reach(&tent, 90.0, [10.0, 0.0]);
         assert!((whole - 8.0).abs() < 1e-9 && (low - 8.0).abs() < 1e-9);
-        // Upside down, a quarter of its height up it is a quarter as wide.
+        // Upside down, it is a quarter as wide at a quarter of its height.
         let upside_down = points.iter().map(|&[x, y, z]| [x, y, 4.0 - z]).collect();
         let funnel = Outline::of(&ColliderShape::Hull { points: upside_down }, 1.0, 1.0);
         let [low, whole] = reach(&funnel, 0.0, [10.0, 0.0]);

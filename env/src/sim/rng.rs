@@ -142,11 +142,11 @@ pub(super) struct ObjectRng {
     pub(super) object: usize,
     pulling: Stream,
     returning: Stream,
-    /// Pulls so far.
+    /// Number of pulls so far.
     pub(super) pulls: u64,
-    /// Returns so far.
+    /// Number of respawns so far.
     pub(super) returns: u64,
-    /// Positions tried for the next respawn.
+    /// Number of positions tried so far for the next respawn.
     pub(super) tries: u64,
 }
 

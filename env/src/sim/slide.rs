@@ -21,7 +21,8 @@ const SAGITTA: f64 = 1e-3;
 /// Maximum number of sections of a path, each straight along one obstacle. A path of 1 km along a thousand bodies ends early.
 const MAX_SECTIONS: usize = 4096;
 
-/// Queries per corner in a section of a path: whether its footprint is touched, when it will be, and whether it is followed.
+/// Cost of a section of a path, in queries per corner: finds the footprints that are touched, the next one that will be, and
+/// the one that is followed.
 const QUERIES_PER_SECTION: usize = 4;
 
 /// Potential obstacles: the footprints with certain numbers.
@@ -102,8 +103,8 @@ impl Obstacles<'_> {
 
     /// Slides a round body that is driven in a direction for a unit of time; stores the path's bends and end in `path`.
     ///
-    /// A footprint that contains its centre does not hold it, so that it can leave in any direction if an object was placed
-    /// onto it. The path ends when the budget is used up.
+    /// A footprint that contains the body's centre does not block it, so that the body can leave in any direction if an object
+    /// was placed onto it. The path ends when the budget is used up.
     pub(super) fn slide(
         &self,
         from: Point,
@@ -184,8 +185,8 @@ fn time_fraction(first: f64, last: f64) -> f64 {
     }
 }
 
-/// Whether an obstacle at this gap holds a body of this radius. A body without radius is a point among widened footprints,
-/// which hold it from inside as well.
+/// Whether an obstacle at this gap blocks a body of this radius. A body without radius is a point among widened footprints,
+/// which block it even if it is inside them.
 fn is_in_contact(gap: &Gap, radius: f64) -> bool {
     gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
 }

@@ -6,7 +6,7 @@ use super::event::{Effect, EndedBy, Event, Step};
 use super::state::{ObjectState, SimState};
 
 /// Records whether the step ended the episode by the world's rules, and how. `had_targets` is whether there ever was a target;
-/// `zone` is how a zone ends the episode.
+/// `zone` is the result with which a zone ends the episode, if one does.
 pub(super) fn check_termination(
     world: &World,
     state: &SimState,

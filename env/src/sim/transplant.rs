@@ -40,8 +40,8 @@ impl Difference {
 }
 
 impl Environment {
-    /// Copies the states of the agent and the objects, their random numbers and the clock from another environment. Rewards,
-    /// bodies and rules stay this world's own.
+    /// Copies the states of the agent and the objects, their random numbers and the clock from another environment. This
+    /// world keeps its own rewards, bodies and rules.
     ///
     /// Both worlds must have the same number of objects, with counterparts at the same index.
     pub(crate) fn copy_state_from(&mut self, other: &Self) {

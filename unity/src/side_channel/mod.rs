@@ -25,7 +25,7 @@ pub(crate) enum SideChannel {
     Parameters,
     /// Named numbers in the form of older clients.
     Properties,
-    /// Training analytics for the engine's maker.
+    /// Training analytics for Unity Technologies.
     Analytics,
 }
 

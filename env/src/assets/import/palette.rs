@@ -20,7 +20,7 @@ pub(super) struct Group {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Triangles of a future group, with the sum of their linear colours weighted by area, and their total area.
+/// Triangles that may become a group, with the sum of their linear colours weighted by area, and their total area.
 #[derive(Default)]
 struct ColorBin {
     light: [f64; 3],

@@ -236,7 +236,7 @@ impl Stage {
     }
 }
 
-/// Maximum numbers of tiles and of instances per pass on this device.
+/// Maximum number of tiles and of instances per pass on this device.
 pub(super) fn pass_limits(limits: &wgpu::Limits) -> [usize; 2] {
     let storage = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let tile = (QUADS * 16) as u64;
