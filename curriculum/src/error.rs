@@ -88,7 +88,7 @@ pub enum CurriculumError {
         /// Its second variant.
         to: String,
     },
-    /// Variants of several tasks, but distances by element are needed.
+    /// Variants of several tasks, which cannot be compared element by element.
     #[error("design: found {a} and {b}, expected variants of one task; probe and step within a task")]
     SeveralTasks {
         /// The first variant.
@@ -130,7 +130,7 @@ pub enum CurriculumError {
         /// The limit of comparisons.
         limit: u64,
     },
-    /// Too few variants differ in one element alone.
+    /// Too few variants differ in only one element.
     #[error(
         "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask \
          for fewer, or give the task parameters that affect it alone"
@@ -262,7 +262,7 @@ pub enum CurriculumError {
         /// The scenario's value.
         expected: String,
     },
-    /// A variant named for a probe differs in other elements, too.
+    /// A variant named for a probe also differs in other elements.
     #[error(
         "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
          {element} alone; name other variants, or the task alone to have them chosen"

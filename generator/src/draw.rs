@@ -23,8 +23,7 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
         colors if colors.draws_colors() => {
-            // Always draws three numbers, so that a variant with channels that vary together shares the first number with
-            // others.
+            // Always draws three numbers, so that variants whose channels vary together share the first number with the others.
             let units = [rng.unit(), rng.unit(), rng.unit()];
             Cow::Owned(Value::Color(
                 colors.color_at(units).expect("three random numbers determine a colour"),

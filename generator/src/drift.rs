@@ -52,7 +52,7 @@ pub struct Drift {
     switch: Switch,
 }
 
-/// The variant at fraction `t`, 0..=1, between two variants of one task: a linear [`Drift`] with switches at points.
+/// The variant at fraction `t`, 0..=1, between two variants of one task: a linear [`Drift`] with [`Switch::AtPoint`].
 ///
 /// # Errors
 /// As [`Drift::new`] and [`Drift::at`].
@@ -61,7 +61,7 @@ pub fn drift(from: &Variant, to: &Variant, t: f64) -> Result<Variant, GeneratorE
 }
 
 impl Drift {
-    /// A linear drift between two variants of the same task, with switches at points.
+    /// A linear drift between two variants of the same task, with [`Switch::AtPoint`].
     ///
     /// # Errors
     /// [`GeneratorError::DifferentTasks`].

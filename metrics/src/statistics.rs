@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_falling_line_falls() {
+    fn trend_falls_only_if_the_line_does() {
         let check = |y: &[f64], expected: bool| {
             let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
             assert_eq!(trend_falls(&x, y, 0.0), expected, "{y:?}");

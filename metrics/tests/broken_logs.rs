@@ -76,7 +76,7 @@ fn bad_cell_is_named_with_the_expected_contents() {
         let [index, column, text, expected] = row.split(" | ").collect::<Vec<_>>()[..] else {
             panic!("{row}")
         };
-        // `message` writes the escapes of quotes as slashes.
+        // `message` turns the backslashes that escape quotes into slashes.
         let found = text.replace('"', "/\"");
         let place = format!("LOG/w/0-train/data-log.tsv:2, column {column}");
         let message = format!("{place}: found \"{found}\", expected {expected}");

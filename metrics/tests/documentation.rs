@@ -57,7 +57,7 @@ fn every_task_value_is_documented() {
     ]) {
         assert!(
             PAGE.contains(&format!("`{name}`")),
-            "docs/metrics.md does not say what {name} is"
+            "docs/metrics.md does not explain {name}"
         );
     }
 }

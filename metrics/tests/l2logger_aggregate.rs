@@ -1,4 +1,4 @@
-//! Compares the table of a log with `python -m l2logger.aggregate`: `tests/oracles/l2logger_aggregate.py` made both.
+//! Compares the table of a log with `python -m l2logger.aggregate`: `tests/oracles/l2logger_aggregate.py` generated both.
 
 use std::path::Path;
 
@@ -17,7 +17,8 @@ fn cells(tsv: &[u8]) -> Vec<Vec<String>> {
     rows.collect()
 }
 
-/// Whether the texts are equal, or numbers that differ at most by the error of pandas' fast parser, one or two last bits.
+/// Whether two cells are equal text, or numbers that differ by at most the error of pandas' fast parser: the last one or two
+/// bits.
 fn same(found: &str, expected: &str) -> bool {
     match (found.parse::<f64>(), expected.parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * b.abs(),

@@ -267,10 +267,10 @@ fn two_writers_never_share_a_folder() {
 
 /// Folders are kept as absolute paths.
 #[test]
-fn a_process_that_turns_to_another_directory_writes_where_it_began() {
+fn changing_the_working_directory_does_not_move_the_log() {
     // In a separate process, because all threads share the working directory.
     if std::env::var_os("LOST_LOG_ALONE").is_none() {
-        let name = "lost_log::a_process_that_turns_to_another_directory_writes_where_it_began";
+        let name = "lost_log::changing_the_working_directory_does_not_move_the_log";
         let mut alone = Command::new(std::env::current_exe().unwrap());
         let output = alone
             .args([name, "--exact"])

@@ -245,7 +245,7 @@ fn published_definitions_split_regimes_by_parameters() {
     assert_eq!(
         published.lifetime.number("perf_maintenance_mrlep"),
         Some(-2.0),
-        "the second evaluation is one"
+        "the block with other parameters is a second evaluation"
     );
 }
 
@@ -271,7 +271,7 @@ fn published_definitions_credit_transfer_to_every_task_in_a_gap() {
     assert_eq!(
         to_c(Definitions::Reference),
         (None, Some(vec![1.5])),
-        "the last pair takes it"
+        "the last pair gets the transfer"
     );
     assert_eq!(to_c(Definitions::Published), (Some(vec![1.5]), Some(vec![1.5])));
 }

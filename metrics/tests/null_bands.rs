@@ -51,8 +51,8 @@ fn log_of(rows: &[Lived]) -> Log {
     read_log(&dir).unwrap()
 }
 
-/// Every task is evaluated before and after each is learned, in the same worlds. `reward` gets the number of learned tasks, the
-/// block type, and the numbers of the task and the world.
+/// Every task is evaluated before the first learning block and after each, always in the same worlds. `reward` gets the number
+/// of learned tasks, the block type, and the numbers of the task and the world.
 fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<Lived> {
     let mut rows = Vec::new();
     for learned in 0..=TASKS.len() {
@@ -508,7 +508,7 @@ fn task_below_a_fifth_of_the_expert_counts_as_never_learned() {
     );
     let blue = reached["find_blue"];
     assert_eq!((blue.expert, blue.is_never_learned()), (Some(284.0), Some(true)));
-    // An expert at or below 0 has no level to take a share of.
+    // No share can be computed from an expert at or below 0.
     assert_eq!(
         (reached["find_green"].share, reached["find_green"].is_never_learned()),
         (None, None)

@@ -1,4 +1,4 @@
-//! Properties of every log and of every score, for any lifetime.
+//! Properties of logs and scores, for arbitrary lifetimes.
 
 use std::path::Path;
 

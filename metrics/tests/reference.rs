@@ -106,7 +106,7 @@ fn every_option_matches_the_reference() {
 }
 
 #[test]
-fn loggers_example_with_a_text_column_is_read() {
+fn l2logger_example_with_a_text_column_is_read() {
     let Some(dir) = reference("l2metrics") else { return };
     let log_dir = tempfile::tempdir().unwrap();
     let block = log_dir.path().join("driver.py_0/0-train");
@@ -127,7 +127,7 @@ fn loggers_example_with_a_text_column_is_read() {
     assert_eq!(
         log.rows.metric_names().collect::<Vec<_>>(),
         ["reward"],
-        "debug_info holds words"
+        "debug_info contains text"
     );
     let whole = read_log_with_texts(log_dir.path()).unwrap();
     assert_eq!(whole.rows.text_names().collect::<Vec<_>>(), ["debug_info"]);

@@ -1,4 +1,4 @@
-//! Laws of the statistics over repeats, for any scores.
+//! Properties of the statistics over repeats, for arbitrary scores.
 
 use driftworld_metrics::{
     Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, probability_of_improvement,
@@ -105,7 +105,7 @@ proptest! {
     }
 
     #[test]
-    fn more_confidence_widens_the_interval(rows in rows(), how in resampling()) {
+    fn higher_confidence_widens_the_interval(rows in rows(), how in resampling()) {
         let table = table_of(&rows);
         let interval = |confidence| {
             let options = BootstrapOptions { confidence, ..options(how) };
@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn rising_map_of_scores_changes_no_probability(a in rows(), b in rows(), how in resampling()) {
+    fn increasing_map_of_scores_changes_no_probability(a in rows(), b in rows(), how in resampling()) {
         let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let map = |score: f64| score.powi(3) + score;
         prop_assert_eq!(of(&table_of(&a), &table_of(&b)), of(&mapped(&a, map), &mapped(&b, map)));

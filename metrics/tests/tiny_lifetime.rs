@@ -131,7 +131,7 @@ fn recovery_and_averages_are_computed_regime_by_regime() {
     let a = &metrics.task_metrics["a_1"];
     assert!(
         a.numbers("recovery_times").unwrap().is_empty(),
-        "the reference lists no single one"
+        "the reference does not list a single recovery time"
     );
     let published = Options {
         definitions: Definitions::Published,
@@ -175,7 +175,7 @@ fn slowing_recovery_is_negative() {
         (Train, "a_1", &[5.0]),
         (Train, "a_1", &[5.0, 6.0]), // reaches 5 at index 0, ends at 6
         (Train, "a_1", &[1.0, 6.0]), // reaches 6 at index 1, ends at 6
-        (Train, "a_1", &[1.0, 2.0]), // never reaches 6: two experiences and one
+        (Train, "a_1", &[1.0, 2.0]), // never reaches 6: two experiences plus one
     ];
     let a = &scored(&blocks, &plain()).task_metrics["a_1"];
     assert_eq!(a.numbers("recovery_times").unwrap(), [0.0, 1.0, 3.0]);
@@ -216,7 +216,7 @@ fn last_pair_gets_the_transfer_of_a_shared_gap() {
         metrics.task_metrics["a_1"].pairs("forward_transfer_ratio"),
         Some(&[("c_1".to_owned(), vec![3.0])].into())
     );
-    // Trained tasks come first, in the order of their learning.
+    // Trained tasks come first, in the order in which they were learned.
     assert_eq!(metrics.task_metrics.keys().collect::<Vec<_>>(), ["b_1", "a_1", "c_1"]);
     assert_eq!(metrics.task_metrics["c_1"].number("avg_train_perf"), None);
 }
@@ -306,9 +306,9 @@ fn uncomputable_values_are_null_and_never_nan() {
     assert_eq!(object["avg_train_perf"], 1.0);
     assert!(
         object["avg_eval_perf"].is_null(),
-        "asked for, and there was no evaluation"
+        "requested, but there was no evaluation"
     );
-    assert!(!object.contains_key("perf_maintenance_mrtlp"), "not asked for");
+    assert!(!object.contains_key("perf_maintenance_mrtlp"), "not requested");
     assert!(!serde_json::to_string(&object["task_metrics"]).unwrap().contains("null"));
     let values: Vec<_> = metrics
         .summary()

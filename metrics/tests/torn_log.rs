@@ -14,7 +14,7 @@ use crate::tier::quick_or_full;
 /// Bytes of every file, by its path within the log.
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Records whose cells are hard for tables: line breaks, tabs and quotes within quotes, multi-byte characters.
+/// Records with cells that are hard to write as a table: line breaks, tabs and quotes within quotes, multi-byte characters.
 fn records() -> Vec<Record> {
     let record = |index: u64, block_num: u64, exp_num: u64, worker: &str, task: &str| {
         let stamp = Timestamp::from_unix_micros(1_600_000_000_000_000 + index as i64).unwrap();
@@ -84,7 +84,7 @@ fn cuts<'a>(before: &'a Files, after: &'a Files) -> impl Iterator<Item = Files> 
 }
 
 #[test]
-fn a_log_cut_at_any_byte_goes_on_as_if_it_never_had_been() {
+fn log_cut_at_any_byte_resumes_as_if_uninterrupted() {
     let records = records();
     let stages = stages(&records);
     let whole = stages.last().unwrap();

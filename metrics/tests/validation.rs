@@ -98,7 +98,7 @@ fn written_logs_are_valid() {
     assert_eq!(
         found.warnings.len(),
         3,
-        "complexity, difficulty and scenario type are not said"
+        "complexity, difficulty and scenario type are not given"
     );
 }
 
@@ -171,7 +171,7 @@ fn row_instead_of_the_header_is_reported_briefly() {
 }
 
 #[test]
-fn falling_numbers_are_faults_and_falling_time_is_a_warning() {
+fn decreasing_numbers_are_faults_and_decreasing_time_is_a_warning() {
     let early = row(0, 3, "complete").replace("20200913", "20200912");
     let earlier = row(0, 4, "complete").replace("20200913", "20200911");
     check(

@@ -1,7 +1,7 @@
 //! [`Assignment`]: the cheapest way to pair rows with columns.
 //!
-//! Own code, because no crate fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance and is no
-//! longer developed; `pathfinding::kuhn_munkres` needs `Ord` costs, which `f64` is not, panics if there are more rows than
+//! Implemented here, because no crate fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance and
+//! is no longer developed; `pathfinding::kuhn_munkres` needs `Ord` costs, which `f64` is not, panics if there are more rows than
 //! columns, and allocates memory for every matrix.
 
 use crate::SimilarityError;

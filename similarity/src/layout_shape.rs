@@ -24,15 +24,15 @@ const NO_PATH: u32 = (SIDE * SIDE) as u32;
 
 /// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the
 /// path lengths between the free cells nearest to 6 × 6 points, and marks: letters of cells and colours of
-/// walls. Places are relative to the arena's sides, so its size does not matter. Details smaller than a cell of the
+/// walls. Positions are relative to the arena's sides, so its size does not matter. Details smaller than a cell of the
 /// raster are ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutShape {
     /// Wall heights in metres; 0 without a wall.
     walls: Vec<f32>,
-    /// Path lengths in steps, from each place to each later one.
+    /// Path lengths in steps, from each point to each later one.
     paths: Vec<u32>,
-    /// Letters and colours, each with its place.
+    /// Letters and colours, each with its position.
     marks: BTreeSet<String>,
 }
 

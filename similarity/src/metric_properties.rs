@@ -1,4 +1,5 @@
-//! [`MetricProperties`]: the metric properties of a measure, so that methods can refuse measures that lack those they need.
+//! [`MetricProperties`]: the metric properties of a measure, so that methods can refuse measures without the properties they
+//! need.
 
 use serde::{Deserialize, Serialize};
 

@@ -146,7 +146,7 @@ pub enum SpecError {
     Document {
         /// The document's name.
         name: String,
-        /// Its problems, sorted by place; at most [`MAX_PROBLEMS`].
+        /// Its problems, sorted by position; at most [`MAX_PROBLEMS`].
         problems: Vec<Problem>,
         /// Whether there are more problems than listed.
         more: bool,
@@ -191,7 +191,7 @@ impl SpecError {
         }
     }
 
-    /// The error of a document or value with these problems, sorted by place.
+    /// The error of a document or value with these problems, sorted by position.
     pub(crate) fn of_document(name: &str, found: impl Into<Listed>) -> Self {
         let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
@@ -207,7 +207,7 @@ impl SpecError {
         matches!(self, Self::Document { more: true, .. })
     }
 
-    /// The problems of a document, sorted by place; empty for other errors.
+    /// The problems of a document, sorted by position; empty for other errors.
     pub fn problems(&self) -> &[Problem] {
         match self {
             Self::Document { problems, .. } | Self::Values { problems, .. } => problems,

@@ -33,7 +33,7 @@ const LINEAR_FROM_CONES: Matrix = [
 
 /// A colour in Oklab: lightness 0 to 1, a from green to red, b from blue to yellow, both about ±0.3 for sRGB.
 ///
-/// Converted once per colour, so that distance matrices do not convert again.
+/// Convert each colour once, to avoid repeated conversions in distance matrices.
 ///
 /// Source: Ottosson 2020, "A perceptual color space for image processing", with the matrices of 2021.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -98,5 +98,5 @@ fn following_the_advice_fixes_the_reported_problem() {
             }
         }
     }
-    assert!(followed >= 50, "{followed} pieces of advice taken");
+    assert!(followed >= 50, "{followed} pieces of advice followed");
 }

@@ -25,7 +25,7 @@ fn message_for(text: &str) -> String {
 }
 
 #[test]
-fn a_look_up_that_comes_to_nothing_is_refused_where_it_is_wrong() {
+fn invalid_look_up_is_reported_at_its_place() {
     let lights = [
         r#"{ "case": { "param": "cue" }, "of": { "red": 1 } }"#,
         r#"{ "case": { "param": "cue" }, "of": { "red": 1, "bleu": 2 } }"#,
@@ -68,7 +68,7 @@ fn a_look_up_that_comes_to_nothing_is_refused_where_it_is_wrong() {
 }
 
 #[test]
-fn value_without_a_case_is_refused_when_a_variant_takes_it() {
+fn value_without_a_case_is_refused_in_a_variant_that_has_it() {
     let text = task(r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#, "");
     let task = TaskSpec::from_json("t.json", &text).unwrap_or_else(|error| panic!("{error}"));
     let near = task.variant("near").expect("the task declares it");
@@ -82,7 +82,7 @@ fn value_without_a_case_is_refused_when_a_variant_takes_it() {
 }
 
 #[test]
-fn margin_without_a_case_is_refused_when_a_variant_takes_it() {
+fn margin_without_a_case_is_refused_in_a_variant_that_needs_it() {
     let distance = r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#;
     let group = |margins: &str| {
         let cubes =

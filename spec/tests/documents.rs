@@ -132,7 +132,7 @@ fn every_bad_document_gives_its_snapshot_message() {
     let changed: Vec<String> = cases.filter(differs).map(|case| case.name).collect();
     assert!(
         changed.is_empty(),
-        "the message of each of these is not the one beside it: {changed:#?}\n\
+        "the message of each of these differs from its snapshot: {changed:#?}\n\
          if the new ones are what authors should read, rewrite them: INSTA_UPDATE=always cargo test -p driftworld-spec"
     );
     // Independent of insta's settings, each document has its snapshot, and each snapshot its document.

@@ -1,4 +1,4 @@
-//! Parameters of type JSON: where one is used decides, when the task is read, which values it may have.
+//! Parameters of type JSON: when the task is read, their values are checked against the schema of each place of use.
 
 use driftworld_spec::{ParameterType, TaskSpec, Value};
 
@@ -11,7 +11,7 @@ fn message_for(parameter: &str, world: &str, variants: &str) -> String {
 }
 
 #[test]
-fn values_are_checked_where_they_stand_and_refused_where_they_are_written() {
+fn values_are_checked_at_their_places_of_use_and_reported_where_written() {
     let sees = |choices: &str| {
         format!(
             r#"{{ "role": "variant", "type": "json", "affects": ["O"], "choices": [{choices}], "default": ["rgb"] }}"#

@@ -1,4 +1,4 @@
-//! Tests that a task is accepted exactly if every object that it can sample has a model of its class.
+//! Tests that a task is accepted if and only if every object that it can sample has a model of its class.
 
 use driftworld_spec::{Classes, Model, Models, TaskSpec};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Names of variants, groups, regimes and scenarios: a document is read exactly if the grammar allows its names.
+//! Names of variants, groups, regimes and scenarios: a document is accepted if and only if the grammar allows its names.
 
 use std::sync::Arc;
 

@@ -44,7 +44,7 @@ fn values_of_the_same_type_are_compared() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused_with_what_was_found_and_expected() {
+fn incomparable_values_are_refused_with_found_and_expected() {
     let messages = [
         "trigger == count",
         "trigger == 'tuoch'",

@@ -32,7 +32,7 @@ fn committed_reference_is_up_to_date() {
 }
 
 #[test]
-fn schemas_accept_what_the_types_write() {
+fn schemas_accept_documents_that_the_types_write() {
     let mut world = World::default();
     world.push(Object::new("tree", [1.0, 2.0])).expect("a tree is valid");
     let reread = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));

@@ -73,7 +73,7 @@ pub(super) fn by_number(run: u32, log: u32) -> impl FnMut(&ExperienceData) -> f6
     }
 }
 
-/// Learns every variant as if there were no other.
+/// Learns every variant as if there were no others.
 pub(super) fn own_expert(run: u32, log: u32, pace: f64) -> impl FnMut(&ExperienceData) -> f64 {
     let mut learned: BTreeMap<String, u32> = BTreeMap::new();
     move |data| {

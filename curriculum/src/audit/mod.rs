@@ -23,11 +23,11 @@ use crate::{CurriculumError, Plan, experts_of};
 pub struct AuditRow {
     /// The agent.
     pub agent: &'static str,
-    /// The result of a trustworthy protocol.
+    /// The result that a trustworthy protocol gives.
     pub expected: &'static str,
-    /// The result of this protocol.
+    /// The result that this protocol gives.
     pub found: String,
-    /// Whether it is as expected; `None` if the scenario cannot show it.
+    /// Whether the result is as expected; `None` if this scenario cannot test it.
     pub passed: Option<bool>,
 }
 
@@ -52,11 +52,11 @@ impl Default for AuditOptions {
 /// Largest share of lifetimes that a metric may call "good" if the agent never learns.
 const FALSE_POSITIVES: f64 = 0.05;
 
-/// A count less probable than this fails the audit; it is small because each audit counts several metrics.
+/// The audit fails if the number of good verdicts is less probable than this; small because each audit tests several metrics.
 const SURPRISE: f64 = 0.001;
 
-/// The confidence at which an audit rejects a mean ratio: three standard errors with many lifetimes, more if few lifetimes
-/// leave these errors uncertain.
+/// The confidence at which an audit rejects a mean ratio: three standard errors with many lifetimes, more with few, because the
+/// standard error is then uncertain.
 const CONFIDENCE: f64 = 0.9973;
 
 /// Allowed error of a ratio whose true value is 1, beyond its standard error.
@@ -68,7 +68,7 @@ const RATIO_SLACK: f64 = 0.02;
 /// - *learns while frozen*: improves by being evaluated. The check of [`run`](crate::run) must refuse it.
 /// - *remembers by number*: repeats what paid best in the experience with the same number in an earlier block. It must not be
 ///   better than its experts.
-/// - *its own expert*: learns every variant as if there were no other. Relative performance and sample efficiency must be 1.
+/// - *its own expert*: learns every variant as if there were no others. Relative performance and sample efficiency must be 1.
 /// - *forgets*: new learning replaces the old. Maintenance must be bad, and forward transfer not good.
 ///
 /// Every reward is 100 times a skill in 0..=1, plus luck of the layout (standard deviation 10) and of the episode (20). `plan`
@@ -278,7 +278,7 @@ fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
     scores.null_bands.keys().filter_map(reading).collect()
 }
 
-/// A ratio's values over lifetimes.
+/// Statistics of a ratio over lifetimes.
 struct Ratio {
     mean: f64,
     error: f64,
@@ -311,7 +311,7 @@ impl std::fmt::Display for Ratio {
     }
 }
 
-/// The probability of at least `least` hits in `tries` tries that each hit with `probability`.
+/// The probability of at least `least` hits in `tries` trials with hit probability `probability`.
 fn tail(least: u32, tries: u32, probability: f64) -> f64 {
     // Starts with no hit; each further term follows from the one before.
     let mut mass = (1.0 - probability).powi(tries.cast_signed());
@@ -339,7 +339,7 @@ mod tests {
         for lifetimes in [2, 3, 5, 20] {
             // Lifetimes vary so much that the slack for small differences hardly matters.
             let drawn = |id| (0..lifetimes).map(move |index| 1.0 + 10.0 * normal("ratio", &[lifetimes, id, index]));
-            // The allowed distance is the same in all tries, and computed once.
+            // The allowed distance is the same in all tries, so it is computed once.
             let unit = Ratio {
                 mean: 1.0,
                 error: 1.0,
@@ -351,10 +351,10 @@ mod tests {
                 (ratio.mean - 1.0).abs() > reach * ratio.error + RATIO_SLACK
             };
             let off = (0..TRIES).filter(is_off).count();
-            // Four standard errors of a share of 0.0027 on either side: bounds that are too wide are detected, too.
+            // Four standard errors of a share of 0.0027 on either side: this also detects bounds that are too wide.
             assert!((7..48).contains(&off), "{lifetimes} lifetimes: {off}");
         }
-        // With 20 lifetimes, an error of twice their standard deviation is found.
+        // With 20 lifetimes, an error of twice their standard deviation is detected.
         let off: Vec<f64> = (0..20).map(|index| 3.0 + normal("off", &[index])).collect();
         let ratio = Ratio::of(&off).unwrap();
         assert!((ratio.dof - 19.0).abs() < 1e-9, "{}", ratio.dof);

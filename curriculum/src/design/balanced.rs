@@ -37,7 +37,7 @@ fn square_row(count: usize, row: usize) -> Vec<usize> {
     shifted
 }
 
-/// A random order for each number.
+/// A random permutation, different for each `number`.
 fn permutation(count: usize, seed: u64, number: u64) -> Result<Vec<usize>, CurriculumError> {
     // The names have equal length, so they sort like the numbers.
     let names = (0..count).map(|index| format!("{index:08}")).collect();

@@ -43,10 +43,10 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
 /// A scenario for each variant that a scenario learns, in which only this variant is learned.
 ///
 /// Each expert learns its variant for as long as the lifetime does, in the same worlds and in blocks of the same lengths, after
-/// the same pre-deployment blocks, and is evaluated on its variant whenever the lifetime is, in the same worlds. So a learner
-/// without interference earns in the lifetime what it earns as its own expert. Drifts are replaced: the experiences that are
-/// nearer to one end of the drift than to the other become experiences of that end's variant, in worlds with the same numbers.
-/// Names are those of [`experts`].
+/// the same pre-deployment blocks, and is evaluated on its variant whenever the lifetime is, in the same worlds. A learner
+/// without interference therefore earns as much in the lifetime as in the scenarios of its experts. Drifts are replaced: the
+/// experiences that are nearer to one end of the drift than to the other become experiences of that end's variant, in worlds
+/// with the same numbers. Names are those of [`experts`].
 ///
 /// # Errors
 /// [`CurriculumError::SameName`] if two would have the same name.

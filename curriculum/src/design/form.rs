@@ -105,7 +105,7 @@ pub(super) fn reordered(
     let first: Vec<usize> = rest.iter().copied().chain(round.clone()).collect();
     let last: Vec<usize> = round.chain(rest).collect();
     let twice_in_a_row = |path: &[usize]| path.windows(2).any(|pair| pair[0] == pair[1]);
-    // With the rest first, a rotated order may equal the design itself.
+    // If the rest comes first, a rotated order may equal the design itself.
     let valid = |found: &Vec<usize>| !twice_in_a_row(found) && *found != path;
     Ok(if valid(&first) || (twice_in_a_row(&last) && !twice_in_a_row(&first)) {
         first
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn each_form_has_its_sequence() {
+    fn each_form_gives_its_sequence() {
         check(None, 3, None, &[0, 1, 2]);
         check(None, 3, Some(5), &[0, 1, 2, 0, 1]);
         check(None, 3, Some(2), &[0, 1]);

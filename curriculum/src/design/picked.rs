@@ -36,7 +36,7 @@ impl Picked {
         }
     }
 
-    /// Whether its task does not declare it.
+    /// Whether it was generated rather than declared by its task.
     pub fn is_made(&self) -> bool {
         self.choice.name.is_some()
     }

@@ -1,4 +1,4 @@
-//! Depth-first search, with backtracking, for a sequence of variants at even distances.
+//! Depth-first search, with backtracking, for a sequence of evenly spaced variants.
 
 use std::cell::Cell;
 

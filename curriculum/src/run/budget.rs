@@ -1,4 +1,4 @@
-//! [`Budget`]: ends regimes after a number of decisions, so that their number of experiences is known only once they have run.
+//! [`Budget`]: ends regimes after a number of decisions. Their number of experiences is then known only once they have run.
 
 use super::plan::Plan;
 

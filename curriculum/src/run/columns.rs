@@ -25,7 +25,7 @@ use super::planned::Planned;
 ///
 /// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
 ///
-/// An experience that was skipped because its world cannot be drawn has a row, too, so that the numbers have no gap: all its
+/// An experience that was skipped because its world cannot be drawn also has a row, so that the numbers have no gap: all its
 /// columns except `world_index` and `progress` are `nan`, and its parameters give the reason under `"skipped"`. Programs that
 /// score a log ignore rows without a value.
 pub const COLUMNS: [&str; 13] = [

@@ -62,8 +62,8 @@ fn fingerprint(action: Action, environment: &Environment) -> u64 {
 
 /// Runs one experience in a freshly reset environment; `trace`, if given, gets a hash of each step.
 ///
-/// Only the environment ends it, by an event or a limit. The last experience of a block ends like any other, never
-/// because the block does. Returns `None` if it was stopped.
+/// Only the environment ends it, by an event or a limit. The last experience of a block ends like any other; the end of the
+/// block does not cut it off. Returns `None` if it was stopped.
 pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,

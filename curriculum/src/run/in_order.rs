@@ -13,9 +13,9 @@ const AHEAD: usize = 16;
 /// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `deliver` returns
 /// `Break`.
 ///
-/// Items are started in order, each by a free worker. After an early end, items in progress are finished and dropped. A panic
-/// of `work` resumes here, when its result would be delivered; one after an early end is dropped, too. If the system cannot
-/// provide threads, fewer do the work, or the calling thread alone.
+/// Items are started in order, each by a free worker. After an early end, items in progress are finished and dropped. If `work`
+/// panics, the panic resumes here when the item's result would be delivered; after an early end, it is dropped, too. If the
+/// system cannot provide threads, fewer do the work, or the calling thread alone.
 pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,

@@ -74,13 +74,13 @@ impl Journal {
         })
     }
 
-    /// Resumes a log that was interrupted at any moment: it continues with the first experience that is not completely in it.
-    /// Starts a new log if there is none.
+    /// Resumes a log that may have been interrupted at any moment: it continues with the first experience that is not
+    /// completely in it. Starts a new log if there is none.
     ///
     /// # Errors
     /// [`CurriculumError::OtherRun`] if the log belongs to another scenario or agent, or its variants or worlds have changed
-    /// since; [`CurriculumError::OtherRow`] if its rows do not match the plan; [`CurriculumError::Log`] if it cannot be read or
-    /// is being written. The log is left unchanged in each case.
+    /// since; [`CurriculumError::OtherRow`] if its rows do not match the plan; [`CurriculumError::Log`] if it cannot be read,
+    /// or another run is writing it. The log is left unchanged in each case.
     pub fn resume(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
         let Some((columns, found)) = begun_log(folder)? else {
             return Self::create(folder, plan, agent);
@@ -217,7 +217,7 @@ impl Journal {
         let experience = &finished.experience;
         let gap = self.gap(plan, number, finished.between.as_ref());
         if let (Some(recordings), Some(recording)) = (&mut self.recordings, finished.recording) {
-            // Before the row: whenever the run is stopped, each row has its recording.
+            // Written before the row, so that each row has its recording even if the run is stopped in between.
             let recording = Recording {
                 origin: origin(plan, number)?,
                 ..recording
@@ -368,7 +368,7 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     }
 }
 
-/// Converts a scenario's word to the log's: both use l2logger's words.
+/// Converts an enum value of a scenario to the log's enum: both serialise to l2logger's words.
 fn logged<T: FromStr>(word: Option<impl Serialize>) -> Option<T> {
     json!(word?).as_str()?.parse().ok()
 }

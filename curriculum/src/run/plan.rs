@@ -40,8 +40,8 @@ const RUN_SEED: &str = "run_seed";
 pub struct Plan {
     pub(super) scenario: Scenario,
     pub(super) regimes: Vec<Planned>,
-    /// What must be unchanged when a log is resumed: for each variant and world its name and hashes of its contents, and the
-    /// additions of [`Plan::add_fingerprint`].
+    /// Values that must be unchanged when a log is resumed: for each variant and world its name and hashes of its contents, and
+    /// the additions of [`Plan::add_fingerprint`].
     pub(super) fingerprints: BTreeMap<String, Value>,
     /// Notes about world files, by path.
     pub(super) notes: BTreeMap<String, String>,

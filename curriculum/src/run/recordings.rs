@@ -1,6 +1,6 @@
 //! [`Recordings`]: the actions of each episode, in a file beside the rows of its block.
 //!
-//! A recording is written before the row of its experience, so every row of a recorded log has one, whenever the run is
+//! A recording is written before the row of its experience, so every row of a recorded log has one, no matter when the run is
 //! stopped.
 
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ impl Recordings {
         }
     }
 
-    /// Whether a log has recordings: it then continues to record.
+    /// Whether a log has recordings, so that it keeps recording when resumed.
     ///
     /// # Errors
     /// [`CurriculumError::Recordings`] if its folder cannot be listed.
@@ -248,7 +248,7 @@ impl<R: BufRead + Seek> RecordingsFile<R> {
         self.damage.clone().map(|source| recording_error(&self.path, source))
     }
 
-    /// The recording of an episode, by its number; `None` without one.
+    /// The recording of an episode, by its number; `None` if there is none.
     ///
     /// # Errors
     /// [`CurriculumError::Recording`] if its line, or the line of its world, is damaged; damaged lines of other episodes are

@@ -15,7 +15,7 @@ pub(crate) struct ExperienceData {
     pub(crate) learning: bool,
     /// Its variant; in a drift, the nearer end.
     pub(crate) variant: String,
-    /// Seed and index of its world: if both are equal, variants of one task have the same layout.
+    /// Seed and index of its world; variants of one task with the same seed and index have the same layout.
     pub(crate) layout: [u64; 2],
 }
 

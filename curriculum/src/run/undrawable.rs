@@ -123,8 +123,8 @@ impl Plan {
     /// experience of a drift, or 100,000 evenly spaced ones, has a variant at all. Regimes with the same worlds are tried once;
     /// those with world files have nothing to draw.
     ///
-    /// A plan that refuses undrawable worlds cannot be made if the first world of a variant is undrawable: use one made with
-    /// [`Undrawable::Skipped`].
+    /// A plan that refuses undrawable worlds cannot be created if the first world of a variant is undrawable: use one created
+    /// with [`Undrawable::Skipped`].
     pub fn try_worlds(&self, worlds: u32, tried: &mut Tried) -> Vec<Trial> {
         let mut trials = Vec::new();
         for planned in self.regimes.iter().filter(|planned| planned.is_drawn()) {

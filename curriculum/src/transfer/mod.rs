@@ -61,10 +61,10 @@ pub struct TransferReport {
 pub struct DirectionReport {
     /// Every pair with a transfer, in the matrix's order: by the learned variant, then by the evaluated one.
     pub pairs: Vec<PairTransfer>,
-    /// The test by ranks: the recommended one.
+    /// The test on ranks, which is recommended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spearman: Option<MantelTest>,
-    /// The test by values.
+    /// The test on values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pearson: Option<MantelTest>,
     /// Why there is no test.

@@ -8,8 +8,8 @@ use super::search::{Found, Search};
 use super::space::Space;
 use super::subject::FreeParameters;
 
-/// Budgets in measured variants: for straight lines, and for scans where requirements cut these off, both per number of changed
-/// parameters; and in total, after which no larger number of changes is tried.
+/// Limits on the number of variants to measure. Per number of changed parameters: along straight lines, and in scans where
+/// requirements cut these lines off. In total: beyond it, no larger number of changes is tried.
 const MAX_STRAIGHT: usize = 24_000;
 const MAX_SCANNED: usize = 24_000;
 const MAX_TOTAL: usize = 200_000;
@@ -17,7 +17,8 @@ const MAX_TOTAL: usize = 200_000;
 /// Minimum number of variants to measure for each set of parameters whose straight line is cut off.
 const MIN_SCANNED: usize = 500;
 
-/// Maximum number of points to compute where distances add up, per number of changed parameters; and limits per change set.
+/// Number of points to compute where distances add up: the maximum per number of changed parameters, then the maximum and
+/// minimum per change set.
 const MAX_ON_LEVELS: usize = 40_000;
 const MAX_POINTS: usize = 400;
 const MIN_POINTS: usize = 24;

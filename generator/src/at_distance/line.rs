@@ -1,5 +1,5 @@
-//! Moves a single number with a distance that does not depend on the others: finds where it meets the target distance, and
-//! checks whether the task allows that value.
+//! Moves a single number whose distance does not depend on the others: finds the value that meets the target distance, and
+//! checks whether the task allows it.
 
 use driftworld_spec::{ParameterType, Variant};
 

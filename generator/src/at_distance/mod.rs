@@ -26,11 +26,12 @@ const MIN_MEASURED: usize = 1500;
 /// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.
 ///
 /// Searches all of the subject's choices and ranges that the task's requirements allow. For each combination of choices, the
-/// numbers move together towards the farthest ends of their ranges. If requirements cut off that line, or a number decides what
-/// is read, each number moves separately. Among answers that change the same number of parameters, picks the one with the
-/// smallest changes as shares of their ranges. A parameter that nothing reads in the answer keeps its value from `from`, unless
-/// a requirement forbids that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens
-/// of thousands of times if requirements cut off lines. `distance` must never be negative, and must be 0 for `from`.
+/// numbers move together towards the farthest ends of their ranges. If requirements cut off that line, or a number decides
+/// which parameters are read, each number moves separately. Among answers that change the same number of parameters, picks the
+/// one with the smallest changes as shares of their ranges. A parameter that nothing reads in the answer keeps its value from
+/// `from`, unless a requirement forbids that. The same arguments always find the same variant. Calls `distance` a few hundred
+/// times, or tens of thousands of times if requirements cut off lines. `distance` must never be negative, and must be 0 for
+/// `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the

@@ -25,7 +25,8 @@ const ROUNDING: f64 = 1e-9;
 /// Share by which the reach of a change set may exceed the distance at its last valid point.
 const REACH_TOLERANCE: f64 = 1e-4;
 
-/// Number of parts in which to measure the range of a number that may decide what is read, and each range of a vector of two.
+/// Number of parts in which to measure the range of a number that may decide which parameters are read, and each range of a
+/// vector of two.
 const PARTS: usize = 32;
 const PARTS_OF_TWO: usize = 8;
 
@@ -35,8 +36,8 @@ struct Candidate<'a> {
     /// The other choices with their distances; empty if the parameter moves smoothly.
     choices: Vec<(Value, f64)>,
     ends: Vec<Value>,
-    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them. If
-    /// there would be too many values, none and infinity.
+    /// For a number that may decide which parameters are read: values from end to end, and how much farther it may reach
+    /// between them. If there would be too many values, none and infinity.
     between: (Vec<Value>, f64),
     min: f64,
     max: f64,

@@ -26,7 +26,7 @@ const MAX_STARTS: usize = 12;
 /// Number of times the small steps are halved.
 const STEP_HALVINGS: u32 = 30;
 
-/// Four times the number of points to try in pairs on either side of the target distance.
+/// A quarter of this is the number of points on either side of the target distance that are tried in pairs.
 const PAIRS: usize = 24;
 
 /// Maximum number of axes for which diagonals are also tried.

@@ -44,10 +44,10 @@ pub(super) type Free<'a> = (&'a str, &'a Parameter);
 pub(super) struct FreeParameters<'a> {
     pub(super) smooth: Vec<Free<'a>>,
     pub(super) listed: Vec<Free<'a>>,
-    /// Parameters that decide what is read, or are read only under a condition.
+    /// Parameters that decide which others are read, or are read only under a condition.
     pub(super) tied: Vec<&'a str>,
-    /// Whether the distance may grow unevenly when all numbers move together: one decides what is read, or moves in integer
-    /// steps.
+    /// Whether the distance may grow unevenly when all numbers move together: one decides which parameters are read, or moves
+    /// in integer steps.
     pub(super) is_bent: bool,
 }
 

@@ -122,7 +122,7 @@ fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
     }
 }
 
-/// A count that was drawn; saturates, because a count beyond `u32` is too large in any case.
+/// Converts a drawn count to an integer. Saturates, because a count beyond `u32` is too large in any case.
 fn whole(value: &Value) -> u32 {
     value
         .as_integer()

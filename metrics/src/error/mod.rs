@@ -304,7 +304,7 @@ pub enum MetricsError {
     #[error("{0}: found bytes that are not UTF-8, expected text")]
     NotUtf8(LogLine),
 
-    /// Block numbers fall while experience numbers rise.
+    /// Block numbers decrease while experience numbers increase.
     #[error(
         "{at}, column block_num: found {found}, expected at least {expected}: \
          in order of exp_num, block numbers never decrease"
@@ -318,7 +318,7 @@ pub enum MetricsError {
         expected: u64,
     },
 
-    /// A number falls from one row of a data file to the next.
+    /// A number decreases from one row of a data file to the next.
     #[error(
         "{at}, column {column}: found {found}, expected at least {expected} as in the row above: numbers never decrease"
     )]

@@ -17,8 +17,8 @@ pub const MAX_REGIMES: usize = 10_000;
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and tables list it
 /// with the parameters of its first row. Under the published definitions, they do split regimes.
 ///
-/// Rows with the parameter `"mix": "shuffled"` belong to a block in which tasks are interleaved: the rows of one task form one
-/// regime there, while the reference counts many.
+/// Rows with the parameter `"mix": "shuffled"` belong to a block in which tasks are interleaved: there, the rows of one task
+/// form one regime, while the reference counts many.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(
     clippy::struct_field_names,
@@ -46,8 +46,8 @@ pub struct Regime {
     pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
-    /// Environment steps up to the end of each row, over all rows of the lifetime that count; `None` unless the log has a
-    /// column `episode_step_count` with a number of 0 or more in each of them.
+    /// Cumulative environment steps at the end of each row, over all rows of the lifetime that count; `None` unless the log has
+    /// a column `episode_step_count` with a number of 0 or more in each of them.
     pub steps: Option<Vec<f64>>,
     /// Performance of each row as logged.
     pub raw: Vec<f64>,

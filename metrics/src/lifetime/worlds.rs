@@ -22,7 +22,7 @@ pub(crate) struct World {
     pub(crate) number: u32,
 }
 
-/// The seed of the worlds of rows with these parameters, as text; empty without one.
+/// The seed of the worlds of rows with these parameters, as text; empty if there is none.
 pub(super) fn seed_of(params: &TaskParams) -> String {
     params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }

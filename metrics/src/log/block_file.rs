@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digest_does_not_depend_on_the_split() {
+    fn digest_does_not_depend_on_chunk_boundaries() {
         let digest = |pieces: &[&str]| {
             let mut digest = Digest::NEW;
             for piece in pieces {

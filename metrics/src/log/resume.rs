@@ -18,8 +18,8 @@ use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
 
 impl LogWriter {
-    /// Continues the log in `dir`, which must have format 1.1. Removes a last line that was torn when the run stopped. New records
-    /// must have the same metrics as earlier ones, and numbers that do not decrease.
+    /// Continues the log in `dir`, which must have format 1.1. Removes the last line if it was torn when the run stopped. New
+    /// records must have the same metrics as earlier ones, and numbers that do not decrease.
     ///
     /// The log need not have any record yet, but its `logger_info.json` must exist.
     ///

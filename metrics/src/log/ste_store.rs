@@ -41,8 +41,8 @@ pub struct StoredTask {
     pub runs: Vec<PathBuf>,
 }
 
-/// Copies an expert's log into a data folder, which is created if necessary. The run appears there whole or not at all. In the mode
-/// [`Overwrite`](SteStoreMode::Overwrite), a run of the same name is removed just before, and other runs afterwards.
+/// Copies an expert's log into a data folder, which is created if necessary. The run appears there completely or not at all. In
+/// the mode [`Overwrite`](SteStoreMode::Overwrite), a run of the same name is removed just before, and other runs afterwards.
 ///
 /// In folder names, bytes that not every file system accepts are written as `%` and two hexadecimal digits, so that no name leads
 /// out of the folder.
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn no_name_leads_out_of_the_folder() {
+    fn names_cannot_escape_the_data_folder() {
         let base = tempfile::tempdir().unwrap();
         let data = base.path().join("data");
         for (number, task) in ["..", "../../escaped", "/etc", "a/b", ".hidden", "é b", "CON:"]
@@ -275,7 +275,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn link_in_a_tasks_place_is_refused() {
+    fn link_instead_of_a_task_folder_is_refused() {
         let base = tempfile::tempdir().unwrap();
         let (data, elsewhere) = (base.path().join("data"), base.path().join("elsewhere"));
         fs::create_dir_all(&data).unwrap();

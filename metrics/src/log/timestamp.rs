@@ -10,7 +10,7 @@ use crate::MetricsError;
 
 const EPOCH: DateTime = datetime(1970, 1, 1, 0, 0, 0, 0);
 
-/// A valid time stamp in the years 1 to 9999, to the microsecond, without a time zone. Earlier time stamps compare as less.
+/// A valid time stamp in the years 1 to 9999, to the microsecond, without a time zone. Earlier time stamps compare as smaller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Timestamp {
     /// Microseconds since 1 January 1970, in the time zone of the writer's clock.

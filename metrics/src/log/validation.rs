@@ -57,11 +57,11 @@ pub struct LogCounts {
     pub tasks: usize,
 }
 
-/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall within a file; every file
-/// has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns about
-/// departures from convention: task names that are not two words, missing or unknown words in `scenario_info.json`, missing
-/// experience numbers, time stamps that run backwards, folders not named after the worker and the block of their rows, an
-/// unfinished last experience, and metrics without numbers.
+/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never decrease within a file;
+/// every file has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns
+/// about departures from convention: task names that are not two words, missing or unknown words in `scenario_info.json`,
+/// missing experience numbers, time stamps that run backwards, folders not named after the worker and the block of their rows,
+/// an unfinished last experience, and metrics without numbers.
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
     let dir = dir.as_ref();
     let mut check = Check::new(Faults::List(Listed::default()));

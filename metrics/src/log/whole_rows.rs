@@ -149,7 +149,7 @@ mod tests {
         };
         check(&format!("{row}0\t\"1\n{row}"), true);
         check(&format!("{row}0\t\"1\n{row}\"\n"), false);
-        // Neither the line with the quote nor one without an end counts.
+        // Neither the line with the quote nor a line without an ending counts.
         check("0\t1\t2\t3\t4\t5\t6\t7\t\"8\n0\t1", false);
     }
 

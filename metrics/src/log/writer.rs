@@ -14,7 +14,7 @@ use crate::log::BlockType;
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
 /// Checks the rules of the format for every record: block and experience numbers never decrease, every record has the same metrics,
-/// a worker completes an experience once, and a worker's rows of one experience in one block have one block type. Keeps one
+/// a worker completes an experience only once, and its rows of one experience in one block have the same block type. Keeps one
 /// file open at a time, and syncs it to disk when it switches to the next, so that a power failure loses at most rows of the last
 /// block. A second writer to the directory is refused where the system can detect it.
 ///

@@ -52,7 +52,7 @@ fn hull(values: impl Iterator<Item = f64>) -> DataRange {
 }
 
 /// Differences up to this share of the largest performance are rounding errors; a mean of a hundred equal numbers has a smaller
-/// one.
+/// error.
 const ROUNDING: f64 = 1e-12;
 
 fn stretch(values: &mut [f64], range: DataRange) {

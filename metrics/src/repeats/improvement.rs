@@ -62,7 +62,7 @@ pub struct StratumImprovement {
 /// let a = ScoreTable::from_runs([("1", [("find_red", 3.0)]), ("2", [("find_red", 5.0)])])?;
 /// let b = ScoreTable::from_runs([("1", [("find_red", 1.0)]), ("2", [("find_red", 3.0)])])?;
 /// let improvement = probability_of_improvement(&a, &b, &BootstrapOptions::default())?;
-/// assert_eq!(improvement.probability.value, 0.875, "of four pairs three are won and one is even");
+/// assert_eq!(improvement.probability.value, 0.875, "of four pairs, three are won and one is tied");
 /// # Ok(())
 /// # }
 /// ```
@@ -158,7 +158,7 @@ mod tests {
             (vec!["x".to_owned()], vec!["w".to_owned()])
         );
         assert!(found.strata[0].probability.interval.is_some());
-        assert!(found.strata[1].probability.interval.is_none(), "one run on either side");
+        assert!(found.strata[1].probability.interval.is_none(), "one run per agent");
     }
 
     #[test]

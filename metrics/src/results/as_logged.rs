@@ -10,7 +10,7 @@ use crate::{BlockType, Log, MetricsError, Options};
 /// Means of one column over the complete rows that have a number in it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct AsLogged {
-    /// Over learning blocks; `None` without a number there.
+    /// Over learning blocks; `None` if none of their rows has a number.
     pub learning: Option<f64>,
     /// Over evaluation blocks.
     pub evaluation: Option<f64>,

@@ -152,7 +152,7 @@ impl Serialize for LifetimeMetrics {
 }
 
 impl LifetimeMetrics {
-    /// Whether tasks were evaluated after learning and none has gained: then its maintenance and transfer say nothing.
+    /// Whether tasks were evaluated after learning but none improved: maintenance and transfer are then meaningless.
     pub fn nothing_was_learned(&self) -> bool {
         let gains: Vec<bool> = self.reached.values().filter_map(Reached::has_gained).collect();
         !gains.is_empty() && !gains.contains(&true)

@@ -11,7 +11,7 @@ use crate::statistics::mean;
 
 impl NullBand {
     /// The band of a metric's mean over several lifetimes, from the means of the same permutations of each. Lifetimes without
-    /// bands, such as those that were read back, do not count; `None` without any.
+    /// bands, such as those that were read back, do not count; `None` if there are no others.
     ///
     /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share worlds or seeds.
     /// It has no standard error: the variation between lifetimes is in their intervals.

@@ -1,4 +1,4 @@
-//! A lifetime being scored: its inputs, and the values found so far.
+//! A lifetime being scored: its inputs, and the values computed so far.
 
 use indexmap::{IndexMap, IndexSet};
 

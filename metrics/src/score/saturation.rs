@@ -28,7 +28,7 @@ pub(super) struct Peak {
     pub(super) experiences: usize,
 }
 
-/// Peak of one performance per experience; without experiences, 0 after 0.
+/// Peak of one performance per experience; without experiences, a value of 0 after 0 experiences.
 ///
 /// QUIRK: the data are smoothed again with a flat window of default length, on top of the preprocessing, whatever smoothing was
 /// chosen there. Under the published definitions, they are not.

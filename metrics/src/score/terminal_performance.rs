@@ -26,7 +26,7 @@ impl Metric for TerminalPerformance {
 /// The mean over the end of a regime, which is at least one experience, and the number of experiences before the middle of the end.
 ///
 /// QUIRK: the end begins at `(1 − 0.1) · n` in floating point, rounded down. Under the published definitions it begins at nine
-/// tenths of n, rounded down. The two never differ below a million experiences, as a test shows.
+/// tenths of n, rounded down. A test checks that the two agree below a million experiences.
 fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) -> (f64, usize) {
     let num = per_experience.len();
     let (begin, experiences) = match (block_type, definitions) {
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn learning_ends_with_its_last_tenth_and_evaluations_count_whole() {
+    fn end_is_the_last_tenth_of_learning_or_the_whole_evaluation() {
         let check = |num: u32, block_type: BlockType, value: f64, experiences: usize| {
             let values: Vec<f64> = (0..num).map(f64::from).collect();
             for &definitions in Definitions::ALL {

@@ -13,7 +13,7 @@ pub(crate) fn stamp(micros: i64) -> Timestamp {
     Timestamp::from_unix_micros(1_600_000_000_000_000 + micros).unwrap()
 }
 
-/// Strings that are hard for tables.
+/// Strings that are hard to write as table cells.
 fn awkward_text() -> impl Strategy<Value = String> {
     prop_oneof![
         "[a-z]{1,6}_[0-9]{1,3}",
@@ -51,8 +51,8 @@ fn any_record() -> impl Strategy<Value = Record> {
     })
 }
 
-/// A valid sequence of records: numbers stay the same or rise, sometimes by a lot, and a worker's experience ends with its complete
-/// row. Each record has a different time stamp.
+/// A valid sequence of records: numbers stay the same or increase, sometimes by a lot, and a worker's experience ends with its
+/// complete row. Each record has a different time stamp.
 pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     let step = || prop_oneof![4 => Just(0_u64), 4 => Just(1), 1 => 2_u64..1_000_000];
     let rows = prop::collection::vec((any_record(), step(), step(), any::<bool>()), 1..10);

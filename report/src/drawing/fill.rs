@@ -1,4 +1,4 @@
-//! Rasterises polygons, lines and circles, antialiased by the covered share of each pixel.
+//! Rasterises polygons, lines and circles, antialiased by the share of each pixel that they cover.
 
 #![expect(clippy::disallowed_methods, reason = "corners of shapes, rounded to what is drawn")]
 

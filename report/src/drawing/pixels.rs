@@ -9,7 +9,7 @@ pub struct Picture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `(height, width, 3)`.
+    /// The pixels' bytes, of shape `(height, width, 3)`.
     pub rgb: Vec<u8>,
 }
 
@@ -20,7 +20,7 @@ pub struct Gray {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `(height, width)`.
+    /// The pixels' levels, of shape `(height, width)`.
     pub levels: Vec<u16>,
 }
 

@@ -9,7 +9,8 @@ use plotters_backend::{
 
 use super::{Drawing, Level, Shape, Side, TextLine, corner, middle};
 
-/// The plotting library's font size divided by the font size in CSS: the library measures from a font's lowest to its highest line.
+/// The plotting library's font size divided by the font size in CSS: the library measures from a font's descender to its
+/// ascender.
 const LIBRARY_SIZE: f64 = 1.24;
 
 /// The backend, which appends to a drawing.

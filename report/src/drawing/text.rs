@@ -15,7 +15,7 @@ static FONT: LazyLock<FontRef<'static>> =
 /// Width of the outline around glyphs, as a share of the font size.
 const RIM: f32 = 0.11;
 
-/// Converts a font size to `ab_glyph`'s scale, which measures a font from its lowest to its highest line.
+/// Converts a font size to `ab_glyph`'s scale, which measures a font from its descender to its ascender.
 fn scale(size: f32) -> PxScale {
     let em = FONT.units_per_em().unwrap_or(1000.0);
     PxScale::from(size * FONT.height_unscaled() / em)

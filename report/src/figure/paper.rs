@@ -48,7 +48,7 @@ impl Entry {
         Self { name, sample }
     }
 
-    /// The entry that counts what is not drawn, if anything; `noun` follows the number.
+    /// The entry that gives the number of things not drawn; `None` if all are. `noun` follows the number.
     pub(super) fn rest(total: usize, drawn: usize, noun: &str) -> Option<Self> {
         let rest = || Self::new(format!("and {}{noun} more, not drawn", total - drawn), Sample::Nothing);
         (total > drawn).then(rest)
@@ -278,7 +278,8 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// The font size in the library's units: it measures from a font's lowest to its highest line, which exceeds the CSS font size.
+/// The font size in the library's units: the library measures from a font's descender to its ascender, which exceeds the CSS
+/// font size.
 fn font_size(pixels: i32) -> f64 {
     f64::from(pixels * DOTS) * 1.24
 }

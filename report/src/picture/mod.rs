@@ -25,12 +25,12 @@ const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
 
-/// Text anchored at a pixel's corner, in a font of this height from its lowest to its highest line.
+/// Text anchored at a pixel's corner, in a font of this height from descender to ascender.
 fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> TextLine {
     TextLine::new(text, corner(at), font_size(height), color)
 }
 
-/// The CSS size of a font of this height from its lowest to its highest line.
+/// The CSS size of a font of this height from descender to ascender.
 fn font_size(height: f64) -> f32 {
     (height / 1.24) as f32
 }

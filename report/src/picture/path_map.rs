@@ -283,14 +283,14 @@ mod tests {
         let matrix = DistanceMatrix::measure(labels, |a, b| {
             Ok::<_, driftworld_similarity::SimilarityError>(distance(a, b))
         })
-        .expect("they are distances");
+        .expect("the distances are valid");
 
         let ordering = driftworld_similarity::order(
             &matrix,
             Method::Nearest,
             &driftworld_similarity::OrderOptions::default(),
         )
-        .expect("it can be ordered");
+        .expect("the items can be ordered");
         let positions = on_paper(&classical_map(&matrix).points);
         let path: Vec<[f32; 2]> = ordering.indices.iter().map(|index| halved(positions[*index])).collect();
         let names = names(&matrix, &ordering, &path, false);

@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn names_never_overlap() {
         let rim = [0, 0, 200, 200];
-        let first = free_box((100, 100), [40, 12], &[], rim).expect("the file can be written");
+        let first = free_box((100, 100), [40, 12], &[], rim).expect("there is room on the right");
         let second = free_box((100, 100), [40, 12], &[first], rim).expect("there is room on the left");
         assert!(first[0] > 100 && second[2] < 100);
         assert_eq!(free_box((100, 100), [40, 12], &[rim], rim), None);

@@ -9,8 +9,8 @@ use crate::color::measure::ColorMeasure;
 /// The distance between two sets of colours: the mean distance of optimally matched pairs, where each unmatched colour counts 1.
 ///
 /// (min Σ d(aᵢ, b₍ᵢ₎) + | |A| − |B| |) / max(|A|, |B|) with d as a share of the [`ColorMeasure::diameter`]; two empty sets are
-/// 0 apart, an empty set is 1 from any other. In `0..=1`. A metric between multisets for every measure except CIEDE2000. Order
-/// within a set does not matter. Time `O(n³)` at worst; up to [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) colours each.
+/// 0 apart, an empty set is 1 away from any other. In `0..=1`. A metric between multisets for every measure except CIEDE2000.
+/// Order within a set does not matter. Time `O(n³)` at worst; up to [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) colours each.
 ///
 /// Source: Schuhmacher, Vo and Vo 2008 (OSPA with order 1 and cut-off 1).
 ///

@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(
             raw(&open, &text),
             0.0,
-            "an empty text as large as the arena is the empty arena"
+            "an empty text layout as large as the arena equals the empty arena"
         );
         let Some(Value::Layout(layout)) = walls.value("map") else {
             panic!("a layout")

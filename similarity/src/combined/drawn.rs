@@ -154,7 +154,7 @@ fn is_usable(width: f64) -> bool {
     width > 0.0 && width.is_finite()
 }
 
-/// Whether a measure requires transport, so that lists of colours are compared by transport, too.
+/// Whether a measure requires transport, so that lists of colours are also compared by transport.
 fn requires_transport(measure: Option<MeasureName>) -> bool {
     use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(

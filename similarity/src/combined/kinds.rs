@@ -13,7 +13,7 @@ pub(super) const REWARD_UNIT: f64 = 100.0;
 /// Weight of the reward in the cost of a match: just enough to break ties.
 const TIE_BREAK: f64 = 1e-9;
 
-/// The distance between two kinds of objects in each part that does not depend on place, heading or size.
+/// The distance between two kinds of objects in each part that does not depend on position, heading or size.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct KindDistance {
     /// The kinds; 0 is none.

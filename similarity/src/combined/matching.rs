@@ -61,8 +61,9 @@ struct Buffers {
     is_matched: Vec<bool>,
 }
 
-/// Visits each object of one class in two worlds once: all of the smaller set with a match, the rest alone. The matching has
-/// the minimum sum of costs; ties are broken by the objects alone, not by the order of the worlds.
+/// Visits each object of one class in two worlds once: every object of the smaller set with its match, the unmatched objects of
+/// the larger set alone. The matching has the minimum sum of costs; ties are broken by the objects alone, not by the order of
+/// the worlds.
 ///
 /// Rewards decide only between otherwise equal matchings; if they counted, a world with all rewards reversed would look like one
 /// with swapped objects.

@@ -81,7 +81,7 @@ pub(super) struct ObjectFeatures {
     pub(super) body: Arc<Leaves>,
     pub(super) paid_for: Arc<Leaves>,
     pub(super) model: Arc<Leaves>,
-    /// Equal for objects that differ only in place, heading and size.
+    /// Equal for objects that differ only in position, heading and size.
     pub(super) kind: u64,
 }
 
@@ -181,7 +181,7 @@ impl Sketcher {
         features
     }
 
-    /// An id for everything about an object except place, heading and size.
+    /// An id for everything about an object except position, heading and size.
     fn kind(&mut self, object: &ObjectFeatures) -> u64 {
         let [l, a, b] = object.color.map_or([0.0; 3], |color| color.0);
         let numbers = [object.reward, object.odds, l, a, b].map(f64::to_bits);

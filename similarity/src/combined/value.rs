@@ -137,7 +137,7 @@ impl ValueMeasure {
                 _ => None,
             },
             Self::Layout { of, arena, widest } => Some((of.between(a, b, *arena), *widest)),
-            // Values between the choices, as during a drift, are compared as same or not.
+            // Values between the choices, as during a drift, are only compared for equality.
             Self::Costs(table) => {
                 let cost = table.between(&a.to_string(), &b.to_string());
                 cost.ok().map(|cost| (cost, table.largest()))

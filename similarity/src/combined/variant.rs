@@ -17,7 +17,7 @@ use crate::{MetricProperties, SimilarityError};
 /// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its
 /// type's measure: the difference of numbers, the turn between headings, the distance of colours in Oklab, the
 /// Euclidean length for points and vectors, the difference in shape of layouts in the task's arena. Each is divided by
-/// the maximum that the declared range or the choices allow. Values of other types are the same or not. Randomized
+/// the maximum that the declared range or the choices allow. Values of other types are only compared for equality. Randomized
 /// parameters are compared by their distributions: Wasserstein-1 for numbers, on the circle for headings, in Oklab for
 /// colours from a continuum, share by share for shares, Wasserstein-2 for points, total variation for words and for
 /// colours from lists. Each is divided by the distance of the widest pair of distributions that the declared ranges

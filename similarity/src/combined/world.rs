@@ -20,8 +20,8 @@ use crate::distribution::Method;
 /// | reward | objects' pay (100 points), its triggers and odds (never against always), pay per second (1 point), rules, step limit |
 /// | observation | colours (black against white, in Oklab), looks of unmatched objects (each), models, sizes, light, camera |
 ///
-/// Numbers without a unit count by their difference over the larger one, so that 1 is something against nothing; words count as
-/// 1 if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
+/// Numbers without a unit count by their difference over the larger one, so that something against nothing counts as 1; words
+/// count as 1 if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
 ///
 /// Objects are matched once within each class, at minimum total cost over all features; unmatched ones count in full: their
 /// presence in the state, their looks in the observation, their pay in the reward. So the order of objects in a document does
@@ -54,7 +54,7 @@ pub(crate) fn match_objects(a: &World, b: &World) -> Vec<(Option<usize>, Option<
 }
 
 /// The distance between two sets of worlds: the mean over pairs, the first with the first and so on; worlds without a partner are
-/// ignored. Each part's numbers are means, too.
+/// ignored. Each part's numbers are also means.
 ///
 /// Draw both sets with the same seed and indices: then pairs share their random numbers, and only the difference between the
 /// variants remains.

@@ -1,4 +1,4 @@
-//! The Mantel test: how rarely two unrelated measures of the same pairs correlate as strongly as these do.
+//! The Mantel test: how often two unrelated measures of the same pairs would correlate as strongly as the given ones.
 
 use rayon::prelude::*;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! Correlations between two measures of the same pairs, and how rarely one arises by chance.
+//! Correlations between two measures of the same pairs, and how often such a correlation arises by chance.
 
 mod mantel;
 mod pearson;

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn narrow_bells_are_as_far_apart_as_on_the_line() {
+    fn narrow_distributions_are_as_far_apart_as_on_the_line() {
         let at = |mean: f64| VonMises { mean, kappa: 500.0 };
         check(&at(350.0), &at(15.0), 25.0, 1e-3);
         let normal = |mean: f64, std: f64| Normal { mean, std };

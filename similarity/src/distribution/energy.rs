@@ -15,8 +15,8 @@ use super::wasserstein_1::folded_mean;
 /// closed form for two normals and for everything piecewise constant or discrete; otherwise by quadrature, mostly within 1e-6,
 /// at 13 to 700 points between neighbouring knots. Ranges of more than 4,096 whole numbers are treated as continuous.
 ///
-/// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
-/// root, too.
+/// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which also returns the
+/// root.
 ///
 /// # Example
 /// ```

@@ -164,7 +164,7 @@ impl Law {
         Some(())
     }
 
-    /// Adds a flat part between two single numbers: a value with uniform noise, clipped at its ends.
+    /// Adds the distribution of a value with uniform noise, clipped at both ends: a flat part between two single numbers.
     fn add_perturbed(&mut self, scale: f64, value: f64, noise: f64, [low, high]: [Option<f64>; 2]) {
         let cut = |x: f64| {
             x.max(low.unwrap_or(f64::NEG_INFINITY))

@@ -42,7 +42,8 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
             if let (Radii::Ring(0.0, outer), Radii::Ring(0.0, other)) = (x, y) {
                 return Some(Measured::closed((outer - other).abs() * 2.0 / 3.0));
             }
-            // Each point moves along its ray: no plan is cheaper, because distances from the centre have to change by as much.
+            // Each point moves along its ray: no plan is cheaper, because distances from the centre must change by at least
+            // that much.
             return Some(x.compare(y, f64::abs));
         }
     }

@@ -197,7 +197,7 @@ mod tests {
             let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(numbers[(a * 5 + b) % 15]);
             let matrix = DistanceMatrix::measure(labels.into_iter().collect(), measure).unwrap();
             prop_assert_eq!(&DistanceMatrix::from_csv(&matrix.to_csv()).unwrap(), &matrix);
-            // Raw output round-trips, too, except for labels that look escaped.
+            // Raw output also round-trips, except for labels that look escaped.
             if matrix.labels().iter().all(|label| !label.starts_with('\'')) {
                 prop_assert_eq!(DistanceMatrix::from_csv(&matrix.to_csv_with(Cells::Raw)).unwrap(), matrix);
             }

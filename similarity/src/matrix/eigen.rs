@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn second_difference_matrix_has_known_eigenvalues() {
-        // 2 - 2 cos(k π / (n + 1)): close together at the top, which makes it hard.
+        // 2 - 2 cos(k π / (n + 1)): close together at the top, which makes the problem hard.
         let n = 400;
         let multiply = |x: &[f64], y: &mut [f64]| {
             for k in 0..n {

@@ -16,8 +16,8 @@ pub struct PlanarMap {
 }
 
 /// Classical scaling (Torgerson 1952): the plane that keeps most of the doubly centred squared distances. Distances that are
-/// not Euclidean are approximated; `explained` says how well. Signs are fixed: on each axis, the item farthest from 0, the
-/// first of equals, is on the positive side. Time `O(n²)` for each of a few dozen steps.
+/// not Euclidean are approximated; `explained` says how well. Signs are fixed: on each axis, the item farthest from 0 (the
+/// first of several) is on the positive side. Time `O(n²)` for each of a few dozen steps.
 ///
 /// Matches the points from `numpy.linalg.eigh` up to signs, within 1e-9; see `tests/oracle/mds.json`.
 ///

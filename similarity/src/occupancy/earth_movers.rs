@@ -15,9 +15,9 @@ use crate::transport::{Units, cheapest_moves};
 /// moved by network simplex. Two grids of 25 × 25 random masses take a few milliseconds.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] if the shapes differ, [`SimilarityError::UnequalMasses`] if a plane's masses differ by more
-/// than 1e-9 of them, [`SimilarityError::TooMany`] if more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells must
-/// send or receive mass.
+/// [`SimilarityError::GridsDiffer`] if the shapes differ, [`SimilarityError::UnequalMasses`] if the two masses of a plane
+/// differ by a share of more than 1e-9, [`SimilarityError::TooMany`] if more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED)
+/// cells must send or receive mass.
 ///
 /// # Example
 /// ```

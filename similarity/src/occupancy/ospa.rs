@@ -8,10 +8,10 @@ use crate::assignment::{Assignment, MAX_ASSIGNED};
 /// Optimal sub-pattern assignment (OSPA) of order 1: how far objects have to be moved to match, where a missing object counts
 /// as one moved by the cut-off.
 ///
-/// `a`, `b`: a class and a position in metres for each object. `cut_off`: metres above 0. With n objects in the larger set, m in
-/// the smaller, and the cut-off c: (min Σ min(c, dᵢ) + c (n − m)) / n, where the sum is over the best pairing and d is in
-/// metres. Two empty sets are 0 apart, an empty set is c from any other. Objects of different classes are c apart, wherever they
-/// are.
+/// `a`, `b`: a class and a position in metres for each object. `cut_off`: metres above 0. With n objects in the larger set, m
+/// in the smaller, and the cut-off c: (min Σ min(c, dᵢ) + c (n − m)) / n, where the sum is over the best pairing and d is in
+/// metres. Two empty sets are 0 apart, an empty set is c away from any other. Objects of different classes are c apart,
+/// wherever they are.
 ///
 /// A metric between multisets of objects, in metres, in `0..=c`. Time `O(n³)` at worst, class by class; up to [`MAX_ASSIGNED`]
 /// objects per set.

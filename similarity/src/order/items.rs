@@ -43,7 +43,7 @@ impl<'a> Items<'a> {
         let mut by_name: Vec<usize> = (0..n).collect();
         by_name.sort_by(|a, b| matrix.labels()[*a].cmp(&matrix.labels()[*b]));
         let rank = |index: usize| by_name.iter().position(|item| *item == index);
-        // A single item is its own first; naming it as the last, too, adds nothing.
+        // A single item is already the first, so it is not fixed as the last as well.
         let last = if n == 1 { None } else { options.last.and_then(rank) };
         let first = options.first.and_then(rank);
         Ok(Self {

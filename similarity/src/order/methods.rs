@@ -31,7 +31,7 @@ pub enum Method {
     TargetStep,
     /// Small steps: the shortest path; ties go to the smaller largest step. Exact for up to 15 items.
     Gradual,
-    /// By growing distance from the first: the most similar item comes next, the least similar last.
+    /// By increasing distance from the first: the most similar item comes next, the least similar last.
     Outward,
     /// The order of the matrix.
     Given,

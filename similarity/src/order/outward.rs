@@ -2,7 +2,7 @@
 
 use super::items::{Items, ascending_ranks};
 
-/// By growing distance from the first item: the requested one, by default the first by name. Time `O(n log n)`.
+/// By increasing distance from the first item, which is the requested one, or by default the first by name. Time `O(n log n)`.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let first = items.ends.first.unwrap_or(0);
     let distances: Vec<f64> = (0..items.len()).map(|item| items.gap(first, item)).collect();

@@ -46,7 +46,7 @@ impl PictureMeasure {
 /// Mean distance of pictures in pairs: the first of each, the second of each, and so on, from the same poses.
 ///
 /// In `0..=1`, with the metric properties of the measure. Both sets must have the same number of pictures, with equal sizes in
-/// each pair. Takes the time of all the pairs together.
+/// each pair. Takes as long as all its pairs together.
 ///
 /// # Errors
 /// [`SimilarityError::NoPictures`] if both are empty, [`SimilarityError::Shape`] if one set has more; otherwise as

@@ -16,11 +16,11 @@ const DRAWS: usize = 96;
 
 /// The distance between the rewards of two worlds, in `0..=1`: EPIC, which ignores rewards that no choice affects.
 ///
-/// A state is the agent's position and the set of used-up objects; an action triggers one object, or none. For it, a world
-/// pays the object's reward (times its odds), or `order_penalty` if out of turn, plus its shaping. Both worlds' rewards
-/// are evaluated on the same 256 transitions, each of which may lead anywhere; objects are indices as in distances of
-/// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a
-/// constant, a factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
+/// A state is the agent's position and the set of used-up objects; an action triggers one object, or none. For an action, a
+/// world pays the object's reward (times its probability), or `order_penalty` if out of turn, plus its shaping. Both worlds'
+/// rewards are evaluated on the same 256 transitions, each of which may lead anywhere; objects are indices as in distances of
+/// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a constant, a
+/// factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
 ///
 /// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is the larger
 /// of the discounts of the worlds' shaping, by default 0.99. A pseudometric among worlds whose objects match in the same way.

@@ -18,11 +18,11 @@ use crate::{
 /// and itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only
 /// one has objects.
 ///
-/// Measures of *occupancy* compare the positions of objects, each class separately. Both worlds become grids of square cells that
-/// cover both arenas, so the pair alone decides; objects outside both arenas are ignored. A cell is 1 m wide, or 2, 4, 8 m and
-/// so on if all classes together would take more than [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the distance between
-/// the centres of opposite corner cells. Measures of *objects* use each object's class and position. The case of a class is
-/// ignored.
+/// Measures of *occupancy* compare the positions of objects, each class separately. Both worlds become grids of square cells
+/// that cover both arenas, so the grids depend on the pair alone; objects outside both arenas are ignored. A cell is 1 m wide,
+/// or 2, 4, 8 m and so on if all classes together would take more than [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the
+/// distance between the centres of opposite corner cells. Measures of *objects* use each object's class and position. The case
+/// of a class is ignored.
 ///
 /// # Example
 /// ```
@@ -63,8 +63,8 @@ pub enum WorldMeasure {
     /// `0..=1`. 1 if only one world has objects.
     Counts,
     /// The colours of objects that have one, ignoring positions: the mean distance of the best pairing, as a share of the
-    /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts as 1, so worlds without and
-    /// with colours are 1 apart. Objects that look like their model are left out.
+    /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts as 1, so a world with
+    /// colours and a world without any are 1 apart. Objects that look like their model are left out.
     Colors(ColorMeasure),
 }
 

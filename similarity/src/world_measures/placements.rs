@@ -38,9 +38,9 @@ impl Placements {
     /// with the minimum work that turns one distribution into the other (Wasserstein-1 of all positions together, exact). A
     /// class that only one set has counts as 1.
     ///
-    /// Classes are added up. The number of objects in a class does not matter: more of them in the same positions are 0
-    /// apart. A metric between sets of positions of the same classes; if the classes differ, the triangle inequality may
-    /// fail. All else in the worlds is ignored. `weights`: supplies the weight of the state.
+    /// Classes are added up. The number of objects in a class does not matter: sets with different numbers of objects in the
+    /// same positions are 0 apart. A metric between sets of positions of the same classes; if the classes differ, the triangle
+    /// inequality may fail. All else in the worlds is ignored. `weights`: supplies the weight of the state.
     ///
     /// # Errors
     /// [`SimilarityError::Empty`] if one has no world, [`SimilarityError::TooMany`] above

@@ -1,4 +1,4 @@
-//! Displays distributions for people: `normal(mean 2, std spread)`. Documents use JSON.
+//! Formats distributions for people to read: `normal(mean 2, std spread)`. Documents use JSON.
 
 use std::fmt::{Display, Formatter, Result};
 

@@ -1,4 +1,4 @@
-//! Special functions used by the distributions. They use `libm` alone, so that results are identical on every platform.
+//! Special functions used by the distributions. They use only `libm`, so that results are identical on every platform.
 //!
 //! Implemented here because the available libraries call the platform's maths functions, and quantiles decide which worlds are
 //! sampled.

@@ -104,8 +104,8 @@ impl Distribution {
         }
     }
 
-    /// How many of `count` objects find a place in turn on an empty field, at least `separation` metres apart; `None` if that is
-    /// random, or takes too long to compute.
+    /// How many of `count` objects find a place in turn in an empty arena, at least `separation` metres apart; `None` if that
+    /// is random, or takes too long to compute.
     pub(crate) fn room_in_turn(&self, count: u64, separation: f64) -> Option<u64> {
         let places = self.num_turns()?;
         self.fixed_place(0)?;

@@ -58,7 +58,7 @@ impl<'a> Document<'a> {
             },
             Some(Stop::Repeated) | None => syntax_error(name, text, &error),
         };
-        // One pass builds the value and detects repeated keys; their places are looked up only if there are any.
+        // One pass builds the value and detects repeated keys; their positions are looked up only if there are any.
         let (value, repeated) = match json::parse(text, max, Repeats::Stop) {
             Ok(value) => (value, Vec::new()),
             Err((_, Some(Stop::Repeated))) => {
@@ -95,7 +95,8 @@ impl<'a> Document<'a> {
     pub(crate) fn error(&self, found: impl Into<Listed>) -> SpecError {
         let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
-        // Finds the places of a few more problems than are listed, then sorts: looking up a hundred thousand would take too long.
+        // Finds the positions of a few more problems than are listed, then sorts: looking up a hundred thousand would take too
+        // long.
         problems.truncate(8 * MAX_PROBLEMS);
         let wanted = problems.iter().map(|problem| Wanted {
             pointer: &problem.pointer,

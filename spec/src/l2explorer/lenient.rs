@@ -103,7 +103,7 @@ impl Reader {
     }
 }
 
-/// The place of an item of a list; a list of one may be written as the item alone.
+/// The pointer to an item of a list; a list of one may be written as the item alone, which then has the list's pointer.
 fn place_of(list: &str, index: usize, len: usize) -> String {
     if len == 1 {
         list.to_owned()

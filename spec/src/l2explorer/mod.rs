@@ -1,6 +1,6 @@
 //! Reads L2Explorer's files. Reset files are read in `read.rs`, their objects in `read_objects.rs`, single values leniently in
-//! `lenient.rs`; `mend.rs` repairs unusable entries; `reader.rs` remembers what they found. Scenario files, which name reset files,
-//! are read in `read_scenario.rs`.
+//! `lenient.rs`; `mend.rs` repairs unusable entries; `reader.rs` holds their shared state. Scenario files, which name reset
+//! files, are read in `read_scenario.rs`.
 //!
 //! Every reset file becomes a [`World`](crate::World), with a [`Warning`](crate::Warning) for everything that is not taken
 //! literally. For the number of a predefined map, the original's regions are written into the world.
@@ -56,7 +56,7 @@ struct Parts {
     environment: Part,
     agent: Part,
     image: Part,
-    /// The original has no rules.
+    /// The rules, which the original does not have.
     rules: Part,
     object: Part,
 }

@@ -13,7 +13,7 @@ use crate::limits::MAX_OBJECTS;
 
 impl Reader {
     pub(super) fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
-        // The schema will reject too many objects, so reading them one by one first would be wasted.
+        // The schema will reject too many objects, so reading them one by one first would be wasted work.
         if objects.len() > MAX_OBJECTS {
             return objects;
         }

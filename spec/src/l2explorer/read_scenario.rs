@@ -51,8 +51,9 @@ impl Scenario {
 struct Reader {
     warnings: Remarks,
     problems: Vec<Problem>,
-    /// The variant of each map of a task, and by task the names already taken, in plain form.
+    /// The variant of each map, by task and map.
     variants: BTreeMap<(String, String), String>,
+    /// The names already taken in each task, reduced to lower-case letters and digits.
     taken: BTreeMap<String, BTreeSet<String>>,
     /// The last number appended to a stem, by task and stem.
     numbers: BTreeMap<(String, String), u32>,

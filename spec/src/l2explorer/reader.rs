@@ -1,4 +1,5 @@
-//! [`Reader`]: what one reading of a reset file remembers: its warnings, and which place of the file became which of the world.
+//! [`Reader`]: the state of reading one reset file: its warnings, and which place in the file each place in the
+//! world comes from.
 
 use std::collections::BTreeMap;
 

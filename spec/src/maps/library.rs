@@ -94,7 +94,7 @@ impl MapLibrary {
     /// Reads a maps file strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by position.
     ///
     /// # Example
     /// ```

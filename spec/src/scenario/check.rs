@@ -18,7 +18,7 @@ impl Scenario {
     /// Reads a scenario strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by position.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         Self::from_json_with(name, text, |_| None)
     }
@@ -28,7 +28,7 @@ impl Scenario {
     /// `task` is called once for each task that the scenario names; if it returns `None`, that task is not checked.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by position.
     ///
     /// # Example
     /// ```

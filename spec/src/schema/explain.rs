@@ -127,7 +127,7 @@ impl Explainer<'_> {
         self.schema.pointer(parent).unwrap_or(&Value::Null)
     }
 
-    /// The problem for an error about the value alone.
+    /// The problem for an error that concerns only the value.
     fn plain(&self, error: &ValidationError) -> Finding {
         let value = self.instance(error);
         let problem = Problem::new(

@@ -20,7 +20,7 @@ impl TaskSpec {
     /// Reads and checks a task spec. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by position.
     pub fn from_json(name: &str, text: &str) -> Result<Arc<Self>, SpecError> {
         Self::from_json_with(name, text, None)
     }

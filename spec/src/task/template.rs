@@ -343,7 +343,7 @@ fn define(generator: &mut SchemaGenerator) {
 /// The schema of the world in a task spec.
 pub(crate) fn world_schema(generator: &mut SchemaGenerator) -> Schema {
     define(generator);
-    Schema::try_from(SCHEMAS.world.clone()).expect("a schema stays one when leaves are opened")
+    Schema::try_from(SCHEMAS.world.clone()).expect("opening leaves keeps a schema valid")
 }
 
 /// The schema of the object in a group; the group's placement gives its coordinates.
@@ -354,7 +354,7 @@ pub(crate) fn object_schema(generator: &mut SchemaGenerator) -> Schema {
     if let Some(properties) = schema["properties"].as_object_mut() {
         properties.shift_remove("coordinates");
     }
-    Schema::try_from(schema).expect("a schema stays one when leaves are opened")
+    Schema::try_from(schema).expect("opening leaves keeps a schema valid")
 }
 
 /// The schema of a group's count.

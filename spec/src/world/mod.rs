@@ -104,7 +104,7 @@ impl World {
     /// Reads a world strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with all problems of the text, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by position.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         Self::from_json_with(name, text, None)
     }

@@ -13,7 +13,7 @@ PROBABILITIES = [1e-9, 1e-4, 0.05, 0.25, 0.5, 0.7, 0.95, 0.9999, 1 - 1e-9]
 
 
 def case(family, fields, law, discrete=False):
-    """One distribution with what scipy says of it."""
+    """One distribution with scipy's values."""
     quantiles = [[p, float(law.ppf(p))] for p in PROBABILITIES]
     points = sorted({q for _, q in quantiles if math.isfinite(q)})
     if not discrete:
@@ -53,7 +53,7 @@ def cases():
     for mean in [0.1, 4, 60, 500, 100_000]:
         yield case("poisson", {"mean": mean}, stats.poisson(mean), True)
     for p in [0.83, 0.5, 0.001]:
-        # scipy counts tries, we count failures before the first success.
+        # scipy counts trials; Driftworld counts failures before the first success.
         yield case("geometric", {"p": p}, stats.geom(p, loc=-1), True)
     for p in [0.2, 0.5, 1]:
         yield case("bernoulli", {"p": p}, stats.bernoulli(p), True)

@@ -13,7 +13,7 @@ use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
-/// Maximum number of placements of a group to check for room, because families have thousands of variants.
+/// Maximum number of placements of a group to check for room, because a family may have thousands of variants.
 const MAX_CASES: usize = 64;
 
 impl Check<'_> {

@@ -27,7 +27,7 @@ impl Object {
     /// Reads one object strictly. `name` is the text's name in messages.
     ///
     /// # Errors
-    /// [`SpecError`] with all problems of the text, sorted by place.
+    /// [`SpecError`] with all problems of the text, sorted by position.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         let document = Document::parse(name, text, MAX_VALUES)?;
         document.fail_on(Object::schema().problems(&document.value))?;

@@ -219,7 +219,7 @@ proptest! {
         prop_assert!((d("v0", "v1") - d("v1", "v0")).abs() < 1e-9);
         let all = [d("v0", "v1"), d("v1", "v2"), d("v0", "v2")];
         let widest = all.into_iter().fold(0.0, f64::max);
-        prop_assert!((widest - 1.0).abs() < 1e-9, "the widest counts 1: {all:?}");
+        prop_assert!((widest - 1.0).abs() < 1e-9, "the distance of the widest pair is 1: {all:?}");
         if VariantMeasure::new(&task, Weights::default()).properties().keeps_triangles() {
             prop_assert!(all[2] <= all[0] + all[1] + 1e-6, "{all:?}");
         }
