@@ -86,7 +86,7 @@ fn non_empty_directory_is_not_written_into() {
             base.path().display()
         )
     );
-    // The advice works.
+    // Following the advice works.
     LogWriter::resume(base.path())
         .unwrap()
         .write(&record(0, 1, BlockType::Train))

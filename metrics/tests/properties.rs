@@ -126,8 +126,8 @@ fn normalized() -> impl Strategy<Value = Options> {
     (by, prop::sample::select(SmoothingMethod::ALL)).prop_map(|(by, smoothing)| options(by, smoothing))
 }
 
-/// The same lifetime with performances that are small whole numbers, so that many sums tie, each shifted by `moved`
-/// hundred-billionths.
+/// The same lifetime with performances that are small whole numbers, so that many sums tie, shifted in turn by
+/// 1e-11 times each entry of `moved`.
 fn tied(rows: &[Lived], moved: &[i8]) -> Vec<Lived> {
     let moves = moved.iter().cycle();
     let row = |(row, moved): (&Lived, &i8)| Lived {

@@ -436,11 +436,11 @@ fn given_ranges_replace_those_of_the_data() {
             &options,
         )
     };
-    // 5 of 0..=10 is 51, 12 is 121, or 101 when it is clamped to the range first.
+    // On the range 0..=10, 5 becomes 51, and 12 becomes 121, or 101 if it is clamped to the range first.
     let both = [("a_1", range(0.0, 10.0)), ("a_2", range(0.0, 10.0))];
     let maximum = |clamped| score_with(VariantMode::Aware, &both, clamped).unwrap().max;
     assert_eq!((maximum(false), maximum(true)), (121.0, 101.0));
-    // If variants do not count, the ranges 0..=5 and 5..=20 are merged; 12 of 0..=20 is 61.
+    // If variants do not count, the ranges 0..=5 and 5..=20 are merged; on 0..=20, 12 becomes 61.
     let apart = [("a_1", range(0.0, 5.0)), ("a_2", range(5.0, 20.0))];
     assert_eq!(score_with(VariantMode::Agnostic, &apart, false).unwrap().max, 61.0);
     assert_eq!(

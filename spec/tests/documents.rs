@@ -135,7 +135,7 @@ fn every_bad_document_gives_its_snapshot_message() {
         "the message of each of these differs from its snapshot: {changed:#?}\n\
          if the new ones are what authors should read, rewrite them: INSTA_UPDATE=always cargo test -p driftworld-spec"
     );
-    // Independent of insta's settings, each document has its snapshot, and each snapshot its document.
+    // Whatever insta's settings, each document must have a snapshot, and each snapshot a document.
     for kind in KINDS {
         let folder = folder("bad", kind);
         assert_eq!(stems(&folder, ".json"), stems(&folder, ".snap"), "bad/{kind}");

@@ -110,7 +110,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
     #[test]
-    fn same_seed_gives_same_plan_and_is_saved(layout in layouts(), other in 0_u64..9) {
+    fn plan_depends_only_on_the_layouts_own_seed(layout in layouts(), other in 0_u64..9) {
         let plan = layout.plan(other);
         prop_assert_eq!(&plan, &layout.plan(other));
         prop_assert_eq!(&plan, &layout.plan(other + 1));
@@ -311,7 +311,7 @@ fn predefined_layout_is_the_map_with_its_number() {
 }
 
 #[test]
-fn layout_without_a_seed_uses_the_worlds() {
+fn layout_without_a_seed_uses_the_worlds_seed() {
     let of = |seed: &str, own: &str| {
         let text =
             format!(r#"{{ {seed} "environment_params": {{ "layout": {{ "maze": {{ "cells": [6, 6]{own} }} }} }} }}"#);

@@ -9,8 +9,10 @@ use driftworld_spec::{Element, Variant, World};
 /// Number of worlds per variant when comparing variants of different tasks.
 const WORLDS: u64 = 16;
 
-/// Cache sizes, for gaps and for subjects with their worlds: a drift has a new variant for each experience.
+/// Maximum number of cached gaps: a drift has a new variant for each experience.
 const MAX_CACHED_GAPS: usize = 4096;
+
+/// Maximum number of cached subjects, each with its worlds.
 const MAX_CACHED_SUBJECTS: usize = 256;
 
 /// A distance in total, and in each element: state, action, transition, reward, observation.

@@ -165,7 +165,7 @@ impl Recordings {
 
 /// The number of bytes with recordings of experiences before this one, and the state to append after them.
 fn valid_prefix(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
-    // A file to continue, not by driftworld-files: it is our own, of any length.
+    // Opened directly, not by driftworld-files: it is our own file, and may have any length.
     let file = match File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, RecordingLines::default())),

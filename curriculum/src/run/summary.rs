@@ -117,7 +117,7 @@ impl Summary {
     }
 
     fn row(&mut self, planned: &Planned) -> &mut RegimeSummary {
-        // A shuffled block returns to its regimes.
+        // Regimes alternate in a shuffled block, so this one need not be the last.
         let first = self.regimes.partition_point(|row| row.block < planned.block);
         let mut of_block = self.regimes[first..].iter();
         let known = of_block.rposition(|row| row.regime == planned.regime);

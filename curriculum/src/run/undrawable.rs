@@ -10,8 +10,9 @@ use super::finishing::Finished;
 use super::plan::Plan;
 use super::planned::Planned;
 
-/// Maximum number of experiences of a drift whose variants are checked, and of failures that are listed.
+/// Maximum number of experiences of a drift whose variants are checked.
 const MAX_CHECKED_VARIANTS: u32 = 100_000;
+/// Maximum number of failures that are listed.
 const MAX_LISTED: usize = 100;
 
 /// How an experience whose world cannot be drawn is treated.
@@ -20,7 +21,7 @@ pub enum Undrawable {
     /// The run stops there.
     #[default]
     Refused,
-    /// It is skipped: the log has a row for it without numbers, and with the reason.
+    /// It is skipped: its row in the log has no numbers, but gives the reason.
     Skipped,
 }
 

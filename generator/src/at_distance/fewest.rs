@@ -8,19 +8,25 @@ use super::search::{Found, Search};
 use super::space::Space;
 use super::subject::FreeParameters;
 
-/// Limits on the number of variants to measure. Per number of changed parameters: along straight lines, and in scans where
-/// requirements cut these lines off. In total: beyond it, no larger number of changes is tried.
+/// Maximum number of variants to measure along straight lines, per number of changed parameters.
 const MAX_STRAIGHT: usize = 24_000;
+
+/// Maximum number of variants to measure in scans where requirements cut these lines off, per number of changed parameters.
 const MAX_SCANNED: usize = 24_000;
+
+/// Total number of measured variants beyond which no larger number of changes is tried.
 const MAX_TOTAL: usize = 200_000;
 
 /// Minimum number of variants to measure for each set of parameters whose straight line is cut off.
 const MIN_SCANNED: usize = 500;
 
-/// Number of points to compute where distances add up: the maximum per number of changed parameters, then the maximum and
-/// minimum per change set.
+/// Maximum number of variants to measure in each pass where distances add up, per number of changed parameters.
 const MAX_ON_LEVELS: usize = 40_000;
+
+/// Maximum number of points to compute per change set in the second pass.
 const MAX_POINTS: usize = 400;
+
+/// Number of points to compute per change set in the first pass.
 const MIN_POINTS: usize = 24;
 
 /// Maximum number of variants to measure while looking for a better answer once there is one.

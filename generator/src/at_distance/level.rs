@@ -11,8 +11,10 @@ use super::search::{Changes, Found, Search, with};
 use super::space::Space;
 use super::subject::Free;
 
-/// Number of parts into which the range of a number is divided for measuring, and each range of a vector.
+/// Number of parts into which the range of a number is divided for measuring.
 const PARTS: usize = 128;
+
+/// The same for each component of a vector.
 const PARTS_OF_VECTOR: usize = 6;
 
 /// Bisection steps within a part.

@@ -19,8 +19,10 @@ use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
-/// Maximum number of variants to measure where requirements cut off the straight line, and the minimum per combination.
+/// Maximum number of variants to measure where requirements cut off the straight line.
 const MAX_MEASURED: usize = 60_000;
+
+/// Minimum number of such variants per combination of choices.
 const MIN_MEASURED: usize = 1500;
 
 /// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.

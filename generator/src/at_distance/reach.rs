@@ -25,9 +25,10 @@ const ROUNDING: f64 = 1e-9;
 /// Share by which the reach of a change set may exceed the distance at its last valid point.
 const REACH_TOLERANCE: f64 = 1e-4;
 
-/// Number of parts in which to measure the range of a number that may decide which parameters are read, and each range of a
-/// vector of two.
+/// Number of parts in which to measure the range of a number that may decide which parameters are read.
 const PARTS: usize = 32;
+
+/// The same for each component of a vector of two.
 const PARTS_OF_TWO: usize = 8;
 
 /// A parameter that may change, with the distance of each choice, or the reach of its number.
@@ -111,7 +112,7 @@ impl<'a> Reach<'a> {
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
             add_change_sets(&members, search, &mut self.spans, &mut sets);
-            // The next set of this size in lexical order.
+            // The next set of this size in lexicographic order.
             let Some(at) = (0..size).rev().find(|at| set[*at] < self.len() - size + at) else {
                 break;
             };

@@ -10,11 +10,13 @@ use driftworld_spec::Variant;
 use super::search::{Changes, Search, with};
 use super::space::{Axis, Point, Space};
 
-/// Points on each line, except the first.
+/// Number of parts into which a line through the box is divided.
 const PARTS: usize = 32;
 
 /// With a budget below this, which is too small to search every line closely, the whole box is searched coarsely first.
 const SMALL_BUDGET: usize = 3000;
+
+/// Maximum number of parts per axis of the grid of lines in the coarse search.
 const COARSE_PARTS: usize = 3;
 
 /// Bisection steps towards a border, and towards the target distance.

@@ -17,8 +17,10 @@ const DOOR: &str = "door";
 /// opens every door of its colour.
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
-/// Minimum distances of a key, in metres: from walls, and from objects and the agent; smaller in small cells.
+/// Minimum distance of a key from walls, in metres; smaller in small cells.
 const WALL_DISTANCE: f64 = 0.4;
+
+/// Minimum distance of a key from objects and the agent, in metres; smaller in small cells.
 const OBJECT_DISTANCE: f64 = 0.8;
 
 /// Number of cells to try at random before going through them one by one.

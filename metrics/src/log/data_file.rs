@@ -1,4 +1,4 @@
-//! Reads the rows of one `data-log.tsv`, and their faults.
+//! Reads the rows of one `data-log.tsv` and reports their faults.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};

@@ -132,7 +132,7 @@ pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) 
     if !cfg!(unix) {
         return Ok(None);
     }
-    // A folder, not by driftworld-files: that opens regular files only.
+    // Opened directly, not by driftworld-files: that opens regular files only, and this is a folder.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),

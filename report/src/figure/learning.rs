@@ -11,7 +11,7 @@ use super::paper::{Area, Axes, Chart, Drawn, Paper, chart, curve, draw_mark};
 use super::scene::{MAX_TASKS, Scene, Stretch, joined, roomy};
 use super::thinning;
 
-/// Pixel columns between the axes, on wide and on narrow paper.
+/// Pixel columns between the axes, in wide and in narrow figures.
 pub(super) const COLUMNS: [i32; 2] = [900, 300];
 /// Maximum number of evaluations joined by dotted lines; if there are more, thin solid lines join them.
 const MAX_DOTTED: usize = 90;

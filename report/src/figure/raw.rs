@@ -11,7 +11,7 @@ use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
 
-/// Maximum number of points drawn individually, on wide and on narrow paper.
+/// Maximum number of points drawn individually, in wide and in narrow figures.
 const MAX_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {

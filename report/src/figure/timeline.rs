@@ -9,9 +9,11 @@ use super::scene::{Scene, Stretch};
 
 /// Maximum number of rows; further tasks are left out.
 const MAX_ROWS: usize = super::scene::MAX_TASKS;
-/// Heights, in pixels of the layout: the strip of distances, a learning bar, the axis.
+/// Height of the strip of distances, in pixels of the layout.
 const STRIP: i32 = 76;
+/// Height of a learning bar.
 const BAR: i32 = 18;
+/// Height of the axis.
 const AXIS: i32 = 44;
 
 /// Positions, in pixels of the layout below the legend.

@@ -1,4 +1,4 @@
-//! The pieces that all parts of a page share: numbers, names, sentences from outside, warnings, and pictures with their text.
+//! The pieces that all parts of a page share: numbers, names, external sentences, warnings, and pictures with their text.
 
 use driftworld_text::rounded;
 use maud::{Markup, PreEscaped, html};
@@ -35,7 +35,7 @@ pub(super) fn breakable(name: &str) -> Markup {
     html! { @for part in name.split_inclusive(['_', '#', '-']) { (part) wbr; } }
 }
 
-/// Sanitises a sentence from outside: control characters become spaces, and long text is cut. The limit is larger than the one
+/// Sanitises an external sentence: control characters become spaces, and long text is cut. The limit is larger than the one
 /// for names.
 pub(super) fn calm(text: &str) -> String {
     /// Maximum number of characters shown.

@@ -10,8 +10,10 @@ use crate::split_mix::SplitMix64;
 /// The discount if neither world's shaping gives one.
 const DISCOUNT: f64 = 0.99;
 
-/// Number of transitions, and of choices and states for the means.
+/// Number of transitions at which rewards are compared.
 const TRANSITIONS: usize = 256;
+
+/// Number of pairs of a choice and a state over which means are taken.
 const DRAWS: usize = 96;
 
 /// The distance between the rewards of two worlds, in `0..=1`: EPIC, which ignores rewards that no choice affects.

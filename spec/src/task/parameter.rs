@@ -214,7 +214,7 @@ fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointe
 }
 
 impl Parameter {
-    /// Whether it affects this element, or the finer one within it, and no other.
+    /// Whether it affects this element or the finer one within it, and nothing else.
     pub fn affects_only(&self, element: Element) -> bool {
         !self.affects.is_empty() && self.affects.iter().all(|affected| element.covers(*affected))
     }
@@ -392,7 +392,7 @@ impl Parameter {
         })
     }
 
-    /// Checks a single parameter beyond the schema.
+    /// The problems of a single parameter that the schema cannot report.
     pub(crate) fn problems(&self, name: &str) -> Vec<Problem> {
         let pointer = format!("/parameters/{}", escape(name));
         let at = |key: &str| format!("{pointer}/{key}");
