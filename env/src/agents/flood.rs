@@ -7,6 +7,9 @@ use super::grid::Grid;
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const DIAGONAL: u32 = 7;
 
+/// More than the cost of any path. A flood goes no farther, so that sums of costs do not overflow.
+const TOO_FAR: u32 = 1 << 31;
+
 /// Ground that a flood spreads over.
 pub(super) trait Ground {
     fn grid(&self) -> Grid;
@@ -86,14 +89,14 @@ impl Flood {
                 let other = cell.wrapping_add_signed(step);
                 let known = self.cost[other];
                 // Most neighbours already have a lower cost.
-                if here.saturating_add(open) >= known {
+                if here + open >= known {
                     continue;
                 }
                 let Some(cost) = ground.cost(cell, step, open) else {
                     continue;
                 };
-                let through = here.saturating_add(cost);
-                if through < known {
+                let through = here + cost;
+                if through < known.min(TOO_FAR) {
                     self.cost[other] = through;
                     self.buckets[through as usize & mask].push(other as u32);
                     self.num_waiting += 1;

@@ -63,7 +63,7 @@ impl Route {
         let mut seen = Vec::new();
         loop {
             let marks = &self.marks;
-            let spread = self.flood.spread(&Paths::From(&self.occupancy), |cell| {
+            let spread = self.flood.spread(&Paths::<true>(&self.occupancy), |cell| {
                 marks.of(cell, |number| seen.push(number));
             });
             let Some(distance) = spread else { break };

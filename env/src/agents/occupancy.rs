@@ -39,30 +39,26 @@ pub(super) struct OccupancyGrid {
     discs: Vec<Disc>,
 }
 
-/// The ground for a flood. It charges for the blocked cells that a walk leaves.
-pub(super) enum Paths<'a> {
-    /// Floods from the end of walks, which leave the cells that the flood enters.
-    To(&'a OccupancyGrid),
-    /// Floods from the start of walks.
-    From(&'a OccupancyGrid),
-}
+/// The ground for a flood from the start of walks, or from their end. It charges for the blocked cells that a walk leaves.
+pub(super) struct Paths<'a, const FROM_START: bool>(pub(super) &'a OccupancyGrid);
 
-impl Ground for Paths<'_> {
+impl<const FROM_START: bool> Ground for Paths<'_, FROM_START> {
     fn grid(&self) -> Grid {
-        let (Self::To(occupancy) | Self::From(occupancy)) = self;
-        occupancy.grid
+        self.0.grid
     }
 
     fn max_cost(&self) -> u32 {
         BLOCKED * DIAGONAL
     }
 
+    #[inline]
     fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
-        let is_blocked = match self {
-            Self::To(occupancy) => occupancy.is_blocked(from.wrapping_add_signed(step)),
-            Self::From(occupancy) => occupancy.is_blocked(from),
+        let left = if FROM_START {
+            from
+        } else {
+            from.wrapping_add_signed(step)
         };
-        Some(open * if is_blocked { BLOCKED } else { 1 })
+        Some(open * if self.0.is_blocked(left) { BLOCKED } else { 1 })
     }
 }
 

@@ -27,13 +27,13 @@ impl Route {
 
     /// Restarts the flood from a cell.
     pub(super) fn begin(&mut self, start: usize) {
-        self.flood.begin(&Paths::From(&self.occupancy), &[start as u32]);
+        self.flood.begin(&Paths::<true>(&self.occupancy), &[start as u32]);
         self.occupancy.closed().for_each(|cell| self.flood.shut(cell));
     }
 
     /// The cost of the path from a cell to the goal.
     pub(super) fn reach(&mut self, cell: usize) -> u32 {
-        self.flood.reach(&Paths::To(&self.occupancy), cell)
+        self.flood.reach(&Paths::<false>(&self.occupancy), cell)
     }
 
     /// The next point to walk to from a position: a few cells along the path to the goal.
