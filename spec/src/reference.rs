@@ -19,23 +19,23 @@ const PARTS: [(&str, &str); 7] = [
 
 const KEYS: &str = "# Every key of a world
 
-A key in bold is L2Explorer's, too. In the `world` of a task, and in the `object` of a group, a parameter or a distribution
-can stand at every key, and at what is in it: the column *parameter* has the type that a parameter needs, and why a key takes
-none. A parameter of type `json` fits every place: each of its values has to be what the schema allows there, `null` where the
-key may be absent. So does a `choice` or `constant` of such values. Where the objects of a group stand is its `placement`, not
-`coordinates`; how many there are is its `count`. The column *compared* names the [part of a distance](comparison.md) that
-looks at the key. `cargo xtask schemas` generates this page.
+Keys in bold also exist in L2Explorer. In the `world` of a task, and in the `object` of a group, the value of any key, or any
+value inside it, can be a parameter or a distribution: the column *parameter* gives the type that the parameter needs, or why a
+key takes none. A parameter of type `json` fits every place if the schema allows each of its values there, `null` where the key
+may be absent; so does a `choice` or `constant` of such values. The positions of a group's objects are its `placement`, not
+`coordinates`; their number is its `count`. The column *compared* names the [part of a distance](comparison.md) that reads the
+key. `cargo xtask schemas` generates this page.
 ";
 
 const COMPARISON: &str = "# How worlds are compared
 
 The distance of two worlds is the sum of these parts. Each counts for an element of the decision process, in the unit that the
-table gives: `the larger one` is the difference of two numbers over the larger of them, so that 1 is something against nothing.
-Corners of walls and waypoints count by the way between them, 10 m for 1, and 1 where there is none to compare with. Parts of
-objects are sums over objects; colours of surroundings are sums over four colours. What nothing reads counts nothing, as the
-reward of an object without a stimulus. Each key counts once, for the element that it belongs to first; [the table of
-keys](world.md) says which parts look at it. What it changes beside that, as `order` changes which objects move, is measured
-by `driftworld elements`. `cargo xtask schemas` generates this page.
+table gives: `the larger one` is the difference of two numbers divided by the larger of them, so that 1 is something against
+nothing. Corners of walls and waypoints count by the distance between them, 10 m for 1, and 1 where there is no counterpart.
+Parts of objects are sums over objects; colours of surroundings are sums over four colours. Values that nothing reads do not
+count, such as the reward of an object without a stimulus. Each key counts once, for the element that it belongs to first; [the
+table of keys](world.md) says which parts read it. Its other effects, as `order` affects which objects move, are measured by
+`driftworld elements`. `cargo xtask schemas` generates this page.
 
 | part | element | 1 is |
 |---|---|---|

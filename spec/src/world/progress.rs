@@ -233,7 +233,7 @@ pub struct RailsProgress {
     #[serde(rename = "patience")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub steps_on_target: u32,
-    /// Indices of the targets postponed.
+    /// Indices of the postponed targets.
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub given_up: Vec<u32>,
 }

@@ -52,17 +52,17 @@ comparisons! {
     /// The agent's heading at the start.
     Heading: S, "agent's heading", "180 degrees",
     /// The meaning of the numbers of an action.
-    ModelOfActions: A, "action model", "another word",
+    ModelOfActions: A, "action model", "another value",
     /// The action space, and whether the agent can interact and carry.
-    SpaceOfActions: A, "action space", "another word",
+    SpaceOfActions: A, "action space", "another value",
     /// The agent's maximum speed.
     LargestSpeed: A, "largest speed", "the larger one",
     /// The agent's maximum turn rate.
     LargestTurnRate: A, "largest turn rate", "the larger one",
     /// How objects move by themselves.
-    Motion: T, "motion of objects", "the larger one, or another word",
+    Motion: T, "motion of objects", "the larger one, or another value",
     /// Solidity and functions of objects, and the energy that they give.
-    Bodies: T, "bodies of objects", "the larger one, or another word",
+    Bodies: T, "bodies of objects", "the larger one, or another value",
     /// Length of a time step in seconds.
     TimeStep: T, "time step", "the larger one",
     /// The agent's width.
@@ -70,9 +70,9 @@ comparisons! {
     /// How the agent's energy changes.
     EnergyOfAgent: T, "agent's energy", "the larger one, or none",
     /// The map and its walls.
-    MapAndWalls: T, "map and walls", "the larger one, or another word",
+    MapAndWalls: T, "map and walls", "the larger one, or another value",
     /// Mazes, rooms and walls that divide the arena.
-    Layouts: T, "layouts", "no wall in common, or ways of no likeness",
+    Layouts: T, "layouts", "no wall in common, or entirely different paths",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
     /// Positions and effects of zones that affect movement.
@@ -80,13 +80,13 @@ comparisons! {
     /// Rewards of objects.
     Rewards: R, "rewards of objects", "100 points",
     /// The stimuli that pay an object's reward.
-    PaidFor: R, "what is paid for", "the larger one, or another word",
+    PaidFor: R, "what is paid for", "the larger one, or another value",
     /// Probability that an object pays.
     RewardProbabilities: R, "odds of reward", "from never to always",
     /// Reward per second.
     StepReward: R, "step reward", "1 point a second",
     /// Shaping rewards, and the conditions that end an episode.
-    ShapingAndEndings: R, "shaping and endings", "the larger one, or another word",
+    ShapingAndEndings: R, "shaping and endings", "the larger one, or another value",
     /// Positions and effects of zones that pay or end an episode.
     ZonePay: R, "pay and endings of zones", "10 m, the larger one, or a zone",
     /// The limit on the length of an episode.
@@ -96,7 +96,7 @@ comparisons! {
     /// The appearance of objects without a match.
     UnmatchedLooks: O, "looks without a match", "an object",
     /// The models of objects.
-    ModelsOfObjects: O, "models of objects", "another word",
+    ModelsOfObjects: O, "models of objects", "another value",
     /// The sizes of objects.
     SizesOfObjects: O, "sizes of objects", "the larger one",
     /// Brightness of the sun.
@@ -106,5 +106,5 @@ comparisons! {
     /// Positions and colours of visible zones.
     ZoneLooks: O, "looks of zones", "10 m, the larger one, or a zone",
     /// Everything else that affects what the agent sees.
-    CameraAndWeather: O, "camera and weather", "the larger one, or another word",
+    CameraAndWeather: O, "camera and weather", "the larger one, or another value",
 }
