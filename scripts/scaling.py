@@ -123,11 +123,11 @@ def write_log(folder: Path, rows: int) -> Path:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measures and prints every table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=0.3, help="of a round of one figure (default: %(default)s)")
-    parser.add_argument("--rounds", type=int, default=5, help="of which the best counts (default: %(default)s)")
+    parser.add_argument("--seconds", type=float, default=0.3, help="length of a round of one figure (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5, help="number of rounds, of which the best counts (default: %(default)s)")
     settings = parser.parse_args(arguments)
     if settings.seconds <= 0.0 or settings.rounds < 1:
-        parser.error("found less than one round, or one of no length, expected --seconds above 0 and --rounds of at least 1")
+        parser.error("expected --seconds above 0 and --rounds of at least 1")
 
     def measured(works: Workloads) -> dict[str, float]:
         return best(works, settings.seconds, settings.rounds)

@@ -161,7 +161,7 @@ impl RecordedEpisodes {
         match (&of_number[..], worker) {
             ([row], None) => Ok(row),
             (_, None) => Err(Failure::input(format!(
-                "{path}: found episodes {number} of {}, expected one; say whose with {}",
+                "{path}: found episode {number} of each of the workers {}, expected one; choose it with {}",
                 workers().join(", "),
                 crate::argument("worker")
             ))),
@@ -186,7 +186,7 @@ impl RecordedEpisodes {
         let available = match (numbers.first(), numbers.last()) {
             (Some(first), Some(last)) if first == last => format!("episode {first}"),
             (Some(first), Some(last)) => format!("one of episodes {first} to {last}"),
-            _ => "an episode, and there is none".to_owned(),
+            _ => "a file with episodes".to_owned(),
         };
         Failure::in_file(&self.path, format!("found no episode {number}, expected {available}"))
     }

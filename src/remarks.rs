@@ -112,7 +112,7 @@ impl Remark {
         } = self;
         let of = match variants.len() {
             1 => String::new(),
-            many => format!(", of {many} variants"),
+            many => format!(", from {many} variants"),
         };
         format!("world {index} of {variant} ({pointer}): {text} (in {worlds} of {total} worlds{of})")
     }
@@ -142,8 +142,11 @@ mod tests {
             found[0].starts_with("world 0 of shut (/objects/0/switch/target): "),
             "{found:?}"
         );
-        assert!(found[0].ends_with("(in 100 of 100 worlds, of 2 variants)"), "{found:?}");
-        assert!(remarks(lever, 1)[0].ends_with("(in 2 of 2 worlds, of 2 variants)"));
+        assert!(
+            found[0].ends_with("(in 100 of 100 worlds, from 2 variants)"),
+            "{found:?}"
+        );
+        assert!(remarks(lever, 1)[0].ends_with("(in 2 of 2 worlds, from 2 variants)"));
     }
 
     #[test]
@@ -174,7 +177,7 @@ mod tests {
             .unwrap()
             .parse()
             .unwrap();
-        // Half of the objects lie beyond 10 m, and both variants have the same worlds.
+        // About half of the objects lie beyond 10 m, and both variants have the same worlds.
         assert!(outside > 60 && outside < 140 && outside.is_multiple_of(2), "{found:?}");
     }
 }

@@ -92,7 +92,7 @@ proptest! {
         let mut orders = Orders { is_open: open, due: closes_after.filter(|_| open).map(ticks) };
         for (number, action) in actions.into_iter().enumerate() {
             let tick = number as u64 + 1;
-            let step = environment.step(action).expect("the episode has no end");
+            let step = environment.step(action).expect("the episode never ends");
             for event in &step.events {
                 match event.effect {
                     Some(Effect::Opened) => orders.open(&door, tick),

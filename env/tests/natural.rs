@@ -204,6 +204,6 @@ fn check_trajectories(maze: Option<&Maze>) {
         (bits, environment.observe().rgb.clone())
     };
     let ((plain, picture), (natural, other_picture)) = (walk(Style::Plain), walk(Style::Natural));
-    assert!(plain == natural, "the ways are the same");
-    assert!(picture != other_picture, "the looks are not");
+    assert!(plain == natural, "the trajectories are the same");
+    assert!(picture != other_picture, "the images differ");
 }

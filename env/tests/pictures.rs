@@ -207,7 +207,7 @@ fn golden_image_is_unchanged() {
         write_png(&path, &frame);
     }
     let (size, golden) = read_png(&path);
-    assert_eq!(size, (84, 84), "the golden picture has the size of the one drawn");
+    assert_eq!(size, (84, 84), "the golden picture is as large as the drawn one");
     let different = golden
         .chunks(3)
         .zip(frame.rgb.chunks(3))

@@ -148,7 +148,7 @@ fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option
     let measure = |other: &Variant| distance(from, other, names);
     let found = match at_distance(from, &Subject::Parameters(names.to_vec()), target, TOLERANCE, measure) {
         Ok(found) => found.variant,
-        Err(error) => return Some(format!("{error}; the grid has {target} by {fewest} changes")),
+        Err(error) => return Some(format!("{error}; the grid reaches {target} with {fewest} changes")),
     };
     let is_allowed = from.with(
         "again",
@@ -171,7 +171,7 @@ fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option
             .with("back", back)
             .is_ok_and(|back| (measure(&back) - target).abs() <= TOLERANCE)
     });
-    idle.map(|name| format!("{target}: nothing reads {name}, and nothing forbids that it stays"))
+    idle.map(|name| format!("{target}: nothing reads {name}, and nothing prevents it from keeping its value"))
 }
 
 /// Checks that the error for a distance beyond reach reports at least the grid's farthest distance.
@@ -240,7 +240,7 @@ macro_rules! drawn_tasks {
 }
 
 /// The search finds everything that an exhaustive search finds, with no more changes.
-mod what_a_grid_finds_is_found_by_as_few_changes {
+mod search_needs_no_more_changes_than_the_grid {
     drawn_tasks! {
         4:
         in_the_first_four: 1,

@@ -158,7 +158,10 @@ impl PyBatch {
     /// Gives an environment the world of a stream for its next episode.
     fn give(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
         let Stream::World { world, .. } = &stream.get().0 else {
-            return Err(PyValueError::new_err("world: found a stream of variants, expected one of a world").into());
+            return Err(PyValueError::new_err(
+                "world: found a stream of variants, expected a stream of a single world",
+            )
+            .into());
         };
         self.known.check(&stream.get().0)?;
         self.supply(env)?.give(World::clone(world));
@@ -355,7 +358,7 @@ impl PyBatch {
     fn lock(&self) -> PyResult<MutexGuard<'_, Stepping>> {
         match self.stepping.try_lock() {
             Ok(stepping) => Ok(stepping),
-            // A panic leaves no environment in the middle of a step: each has its own part.
+            // A panic leaves no environment in the middle of a step, because each has its own state.
             Err(TryLockError::Poisoned(poisoned)) => Ok(PoisonError::into_inner(poisoned)),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
                 "environment: found it in use by another thread, expected one thread at a time; make an environment for each \

@@ -115,7 +115,9 @@ impl PyStream {
     fn text(&self) -> Result<String> {
         match &self.0 {
             Stream::World { world, .. } => Ok(world.to_json()),
-            _ => Err(PyValueError::new_err("world: found a stream of variants, expected one of a world").into()),
+            _ => Err(
+                PyValueError::new_err("world: found a stream of variants, expected a stream of a single world").into(),
+            ),
         }
     }
 

@@ -73,7 +73,7 @@ def vector(num_envs: int, change: dict[str, Any], **options: Any) -> Any:
 
 
 def expected_reason(name: str) -> str | None:
-    """The `ended_by` of infos: `None` for a step limit, because a wrapper may have it."""
+    """The `ended_by` of infos: `None` for a step limit, which may also be a wrapper's."""
     return None if name == "steps" else name
 
 

@@ -110,7 +110,7 @@ def test_unfrozen_agent_is_refused_in_every_lifetime(kind: type[Uniform], num_en
     np.random.seed(3)
     for lifetime in range(LIFETIMES):
         name = TASKS[lifetime % len(TASKS)]
-        with pytest.raises(CurriculumError, match=r"block 0: found another action in step \d+ of experience \d") as refused:
+        with pytest.raises(CurriculumError, match=r"block 0: found a different action in step \d+ of experience \d") as refused:
             run(kind, name, lifetime, num_envs)
         assert refused.value.code == "curriculum/not-frozen"
 

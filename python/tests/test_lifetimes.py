@@ -102,7 +102,7 @@ class Memoriser(Circler):
 def test_agent_changed_by_evaluations_is_refused(tmp_path: Path) -> None:
     regimes = [{"task": "get_to_goal", "variant": "soft", "count": 6, "seed": 1, "max_steps": 30}]
     curriculum = Curriculum.from_dict({"name": "frozen", "blocks": [{"type": "evaluation", "regimes": regimes}]})
-    with pytest.raises(CurriculumError, match="block 0: found another action in step 1 of experience 0 .get_to_goal#soft."):
+    with pytest.raises(CurriculumError, match="block 0: found a different action in step 1 of experience 0 .get_to_goal#soft."):
         curriculum.run(Memoriser(), tmp_path / "log", **SMALL)
     assert curriculum.run(Memoriser(), check_frozen=False, **SMALL).finished
     # For an agent that acts the same in repeated evaluations, the check does not change the log.

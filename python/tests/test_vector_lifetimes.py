@@ -166,7 +166,7 @@ def test_agent_changed_by_evaluations_is_refused() -> None:
 
     regimes = [{"task": "get_to_goal", "variant": "soft", "count": 6, "seed": 1, "max_steps": 30}]
     curriculum = Curriculum.from_dict({"name": "frozen", "blocks": [{"type": "evaluation", "regimes": regimes}]})
-    with pytest.raises(CurriculumError, match="block 0: found another action in step 1 of experience"):
+    with pytest.raises(CurriculumError, match="block 0: found a different action in step 1 of experience"):
         curriculum.run_vector(Many(3, Counter), num_envs=3, **SMALL)
     assert curriculum.run_vector(Many(3, Counter), num_envs=3, check_frozen=False, **SMALL).finished
 

@@ -47,7 +47,7 @@ pub(crate) struct Film {
     film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Print what came of it as JSON.
+    /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }

@@ -14,7 +14,7 @@ use super::film_choice::{self, report_film, summary};
 use super::output;
 use crate::Failure;
 
-/// Run recorded episodes once more, check them, and draw them.
+/// Replay recorded episodes, check them, and draw them.
 ///
 /// Reads what `run --record`, `film --record`, `play --record`, Python's `record=True` and `driftworld-unity --record` wrote. An episode
 /// is run once more from its world and its actions, and must earn what the log says, to the last bit. Without --episode, all are checked.
@@ -30,7 +30,7 @@ pub(crate) struct Replay {
     /// The number of the episode: `exp_num` in the log, from 0.
     #[arg(long, value_name = "N")]
     episode: Option<u64>,
-    /// Whose episode it is, where several workers have one of this number.
+    /// The worker whose episode to replay, if several have one with this number.
     #[arg(long, value_name = "WORKER", requires = "episode")]
     worker: Option<String>,
     /// File to draw it into: .gif or .apng for a film, .png for a sheet of the frames that matter.
@@ -40,7 +40,7 @@ pub(crate) struct Replay {
     film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Print what came of it as JSON.
+    /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -78,7 +78,7 @@ impl Replay {
             }));
         }
         output::line(format!(
-            "episode {number}: {}; comes out as recorded",
+            "episode {number}: {}; replays as recorded",
             summary(&recording)
         ))?;
         written.map_or(Ok(()), |(path, film)| report_film(path, &film))
@@ -118,7 +118,7 @@ impl Replay {
             const MAX_LISTED: usize = 10;
             let shown: Vec<&Failure> = failures.iter().take(MAX_LISTED).collect();
             output::note(format!(
-                "{checked} episodes come out as recorded, {} do not",
+                "{checked} episodes replay as recorded, {} do not",
                 failures.len()
             ));
             return Err(Failure::of_several(&shown));
@@ -134,7 +134,7 @@ impl Replay {
             "{}: {checked} {} of {steps} steps in all {} as recorded{skipped}",
             self.log.shown(),
             if checked == 1 { "episode" } else { "episodes" },
-            if checked == 1 { "comes out" } else { "come out" },
+            if checked == 1 { "replays" } else { "replay" },
         ))
     }
 }

@@ -63,7 +63,7 @@ fn recorded_run_is_unchanged_and_each_episode_can_be_replayed() {
         assert_eq!(found, files(&plain), "{agent}: recording changes no row");
         let stdout = succeed(&["replay", text(&kept)]);
         assert!(
-            stdout.contains("14 episodes of") && stdout.ends_with("come out as recorded\n"),
+            stdout.contains("14 episodes of") && stdout.ends_with("replay as recorded\n"),
             "{stdout}"
         );
         fs::remove_dir_all(&plain).unwrap();
@@ -145,7 +145,7 @@ fn damaged_recording_is_located_and_others_are_readable() {
     assert!(error.contains("actions.jsonl: line 3: found the checksum"), "{error}");
     succeed(&["replay", text(&log), "--episode", "1"]);
     let error = fail(1, &["replay", text(&log)]);
-    assert!(error.contains("13 episodes come out as recorded, 1 do not"), "{error}");
+    assert!(error.contains("13 episodes replay as recorded, 1 do not"), "{error}");
     fs::write(&path, &whole[..whole.len() - 20]).unwrap();
     let error = fail(1, &["replay", text(&log), "--episode", "4"]);
     assert!(error.contains("found the end of the file"), "{error}");

@@ -61,7 +61,7 @@ impl Parameters {
                 "light_intensity" => world.environment_params.light_intensity = *number,
                 "max_linear_speed" => agent.max_linear_speed = *number,
                 "max_angular_speed" => agent.max_angular_speed = *number,
-                other => unreachable!("{other} is not among the known"),
+                other => unreachable!("{other} is not a known parameter"),
             }
         }
     }

@@ -19,7 +19,7 @@ fn every_error_has_its_message() {
             block: 2,
             variant: "find_objects#red".into(),
             experience: 45,
-            found: "another action in step 3".into(),
+            found: "a different action in step 3".into(),
         },
         CurriculumError::NoVariants,
         CurriculumError::BadCount {

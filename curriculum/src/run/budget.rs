@@ -51,7 +51,7 @@ impl Budget {
         number
     }
 
-    /// Decisions made in a regime by the time that an environment is free.
+    /// Decisions made in a regime by the time an environment becomes free.
     fn decisions(&self, plan: &Plan, regime: usize) -> u64 {
         let sum = self.sums.iter().find(|sum| sum.0 == regime).map_or(0, |sum| sum.1);
         let free = self.lanes.iter().map(|lane| lane.1).min().unwrap_or(0);

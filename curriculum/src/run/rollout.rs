@@ -202,7 +202,7 @@ pub(super) fn expect_frozen(
     let found = if first.1 != repeat.1 {
         let pairs = first.1.iter().zip(repeat.1);
         let same = pairs.take_while(|(one, other)| one == other).count();
-        format!("another action in step {}", same + 1)
+        format!("a different action in step {}", same + 1)
     } else if first.0.to_bits() != repeat.0.to_bits() {
         format!("reward {} instead of {}, at the end", repeat.0, first.0)
     } else {

@@ -115,7 +115,7 @@ fn changed_actions_are_detected_without_rewards() {
         let mut agent = Fidgety { episodes: 0, step };
         let log = folder.path().join(step.to_string());
         let refused = run_with(&scenario, &mut agent, &log, &settings).expect_err("it acts differently");
-        let expected = format!("found another action in step {} of experience", step + 1);
+        let expected = format!("found a different action in step {} of experience", step + 1);
         assert!(refused.to_string().contains(&expected), "{refused}");
     }
 }

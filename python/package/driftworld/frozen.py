@@ -60,7 +60,7 @@ class Frozenness:
         pairs = enumerate(zip(first.steps, trace.steps, strict=False), start=1)
         step = next((number for number, (one, other) in pairs if one != other), min(len(first.steps), len(trace.steps)) + 1)
         raise CurriculumError(
-            f"block {now.block}: found another action in step {step} of experience {now.number} ({now.variant}) when this evaluation was "
+            f"block {now.block}: found a different action in step {step} of experience {now.number} ({now.variant}) when this evaluation was "
             "run once more, expected the same: evaluations change the agent, or its random numbers are not drawn from the seed that "
             "begin() gets. Keep running statistics, memories and counters apart while frozen, and use generators of your own in place "
             "of NumPy's, torch's or Python's global ones; check_frozen=False runs without this check",

@@ -74,7 +74,7 @@ fn is_of_number(c: char) -> bool {
     c.is_ascii_digit() || "×%−-+".contains(c)
 }
 
-/// A text, cut off if it is too wide.
+/// The text, truncated if it is too wide.
 pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();

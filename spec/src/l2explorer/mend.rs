@@ -120,8 +120,8 @@ impl Entry {
             Self::Pair(low, high) => format!("two numbers from {low} to {high}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Color => "a colour of three numbers in 0..1".to_owned(),
-            Self::Text => format!("a text of 1 to {MAX_CHARACTERS} letters"),
-            Self::Model => format!("a text of 1 to {MAX_CHARACTERS} letters, or a whole number to {MAX_MODEL}"),
+            Self::Text => format!("a string of 1 to {MAX_CHARACTERS} characters"),
+            Self::Model => format!("a string of 1 to {MAX_CHARACTERS} characters, or a whole number up to {MAX_MODEL}"),
         }
     }
 

@@ -182,7 +182,7 @@ impl Reader {
         match map.get(key).and_then(Json::as_str) {
             Some(text) if (1..=4096).contains(&text.chars().count()) => text.to_owned(),
             _ => {
-                self.wrong(at, map, key, "a text of 1 to 4096 characters");
+                self.wrong(at, map, key, "a string of 1 to 4096 characters");
                 String::new()
             }
         }
@@ -257,11 +257,11 @@ mod tests {
         );
         check(
             &format!(r#""count": 1, {params}"#),
-            "(/scenario/0/regimes/0): found nothing, expected the key \"task\" with a text of 1 to 4096 characters",
+            "(/scenario/0/regimes/0): found nothing, expected the key \"task\" with a string of 1 to 4096 characters",
         );
         check(
             r#""task": "a", "count": 1, "params": {}"#,
-            "expected the key \"map\" with a text of 1 to 4096 characters",
+            "expected the key \"map\" with a string of 1 to 4096 characters",
         );
         check(
             r#""task": "a", "count": 1, "params": [3]"#,

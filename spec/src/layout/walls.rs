@@ -17,7 +17,7 @@ pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'
 }
 
 impl LayoutWall {
-    /// The keys of the forms it has.
+    /// The keys of the forms that are set.
     pub(super) fn forms(&self) -> Vec<&'static str> {
         present([
             ("from", self.from.is_some() || self.to.is_some()),
