@@ -371,7 +371,7 @@ fn even_steps_are_made_and_proven_or_their_reach_is_reported() {
     }
     assert_eq!(learned(&scenario).len(), 6);
     let error = fail_in(with_park().path(), 1, &format!("curriculum {steps} 6"));
-    error.says("found at most 5 of 0.2 ± 0.01, expected 6; the farthest variant is 1.0000 away");
+    error.says("found at most 5 steps of 0.2 ± 0.01, expected 6; the farthest variant is 1.0000 away");
     let (whole, _) = designed("park.json --step-distance 0.05 --tolerance 0.005 --steps 6");
     assert_eq!(learned(&whole).len(), 7);
 }
