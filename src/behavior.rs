@@ -28,12 +28,12 @@ pub struct ExpertPair {
 }
 
 impl ExpertPair {
-    /// How many points less `b`'s expert earns in `a`'s world than that world's own expert; negative if more.
+    /// How many points fewer `b`'s expert earns in `a`'s world than that world's own expert; negative if more.
     pub fn regret_in_a(&self) -> f64 {
         self.a_in_a.earned - self.b_in_a.earned
     }
 
-    /// How many points less `a`'s expert earns in `b`'s world than that world's own expert; negative if more.
+    /// How many points fewer `a`'s expert earns in `b`'s world than that world's own expert; negative if more.
     pub fn regret_in_b(&self) -> f64 {
         self.b_in_b.earned - self.a_in_b.earned
     }
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn regret_is_the_own_experts_advantage() {
+    fn regret_is_the_advantage_of_the_worlds_own_expert() {
         let expert_run = |earned, success| ExpertRun {
             earned,
             success,

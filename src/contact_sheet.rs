@@ -339,7 +339,7 @@ mod tests {
 
     /// The number of cells that show their subject, and of all cells.
     fn count_seen(task: &Arc<TaskSpec>) -> (usize, usize) {
-        let (cells, _) = cells(&of_task(task, 8), LOOK, &|| ()).expect("they can be drawn");
+        let (cells, _) = cells(&of_task(task, 8), LOOK, &|| ()).expect("it can be drawn");
         (cells.iter().filter(|cell| cell.is_seen).count(), cells.len())
     }
 
@@ -356,7 +356,7 @@ mod tests {
     fn most_cells_of_the_example_worlds_show_their_subject() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
         let (mut seen, mut total) = (0, 0);
-        let files = std::fs::read_dir(folder).expect("the examples are there");
+        let files = std::fs::read_dir(folder).expect("the examples are committed");
         let mut files: Vec<_> = files.map(|entry| entry.expect("it can be read").path()).collect();
         files.sort();
         for path in files.into_iter().step_by(crate::tier::quick_or_full(4, 1)) {
@@ -376,7 +376,7 @@ mod tests {
         let shown: Vec<Item> = named
             .map(|name| Item::declared(task.variant(name).expect("it is declared"), 0))
             .to_vec();
-        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("it can be drawn");
         let mut captions: Vec<String> = cells
             .iter()
             .map(|cell| format!("{}: {}", cell.row.title, cell.row.words))
@@ -395,13 +395,13 @@ mod tests {
         let mut renderer = Renderer::default();
         let worlds: Vec<Candidates> = shown
             .iter()
-            .map(|shown| Candidates::of(shown, None).expect("they are drawn"))
+            .map(|shown| Candidates::of(shown, None).expect("they render"))
             .collect();
-        let joint = joint_choice(&mut renderer, &worlds, LOOK).expect("they are drawn");
-        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let joint = joint_choice(&mut renderer, &worlds, LOOK).expect("they render");
+        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("it can be drawn");
         let mut blind = 0;
         for ((candidates, cell), shown) in worlds.iter().zip(&cells).zip(&shown) {
-            let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, LOOK).expect("it is drawn");
+            let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, LOOK).expect("it renders");
             let sentence = capitalized(&viewpoint(shown, choice, LOOK)) + ".";
             let below = format!("ther cells: {}.", viewpoint(shown, choice, LOOK));
             assert_eq!(
@@ -417,7 +417,7 @@ mod tests {
             let candidate = candidates.at(choice.world);
             let mut space = |turn| {
                 let camera = agent_camera(&candidate.world, turn);
-                openness(&mut renderer, &candidate.scene, &camera).expect("it is drawn")
+                openness(&mut renderer, &candidate.scene, &camera).expect("it renders")
             };
             let own = space(choice.turn);
             assert!(TURNS.into_iter().all(|turn| space(turn) <= own), "{}", cell.row.title);
@@ -431,7 +431,7 @@ mod tests {
         let task = tasks::task("moving_object").expect("it is built in");
         let named = ["wandering", "depth_only", "rgb_only"];
         let shown = named.map(|name| Item::declared(task.variant(name).expect("it is declared"), 0));
-        let (cells, _) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let (cells, _) = cells(&shown, LOOK, &|| ()).expect("it can be drawn");
         for (cell, is_gray) in cells.iter().zip([false, true, false]) {
             let picture = cell.row.pictures[0].to_picture();
             let gray = picture
@@ -457,7 +457,7 @@ mod tests {
             let shown: Vec<Item> = (names.iter())
                 .map(|name| Item::declared(tasks::variant(name).expect("it is declared"), 0))
                 .collect();
-            cells(&shown, LOOK, &|| ()).expect("they can be drawn").1.concat()
+            cells(&shown, LOOK, &|| ()).expect("it can be drawn").1.concat()
         };
         let one = notes(&["find_objects#blue", "select_object#green", "select_object#red"]);
         assert!(

@@ -106,14 +106,14 @@ mod tests {
             world.objects.push(cube);
         }
         change(&mut world);
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     }
 
     fn between(a: &World, b: &World) -> Found {
         let area = common_area(a, b);
         let [a, b] = [a, b].map(|world| tables(world, area, &Catalogue::default()).expect("the worlds are small"));
-        let (rewards, motion) = w1(&a, &b).expect("the tables are of one size");
-        let bisimulation = bisimulation(&a, &b).expect("the tables are of one size");
+        let (rewards, motion) = w1(&a, &b).expect("the tables have the same size");
+        let bisimulation = bisimulation(&a, &b).expect("the tables have the same size");
         Found {
             rewards,
             motion,

@@ -316,7 +316,7 @@ mod tests {
         let mut pond = Zone::disc([0.0, 0.0], 2.0);
         pond.name = Some("pond".to_owned());
         draft.environment_params.zones = vec![pond, Zone::disc([20.0, 0.0], 1.0)];
-        let world = draft.check().expect("the world is sound");
+        let world = draft.check().expect("the world is valid");
         let mut environment = Environment::new(world.clone());
         let caption = |environment: &Environment| words(environment, None).replace('\u{a0}', " ");
         assert_eq!(caption(&environment), "0.0 s · return 0.0 · energy 30 · in pond");
@@ -333,7 +333,7 @@ mod tests {
             draft.agent_params.coordinates = [9.0, 9.0];
             draft.agent_params.energy = None;
         });
-        let environment = Environment::new(elsewhere.expect("the world is sound"));
+        let environment = Environment::new(elsewhere.expect("the world is valid"));
         assert_eq!(caption(&environment), "0.0 s · return 0.0");
     }
 

@@ -1,4 +1,5 @@
-//! [`Failure`]: why an operation of this library failed, in a text that each interface renders with its own names of arguments.
+//! [`Failure`]: the reason why an operation of this library failed. Each interface renders its text with its own argument
+//! names.
 
 use std::error::Error;
 use std::fmt;

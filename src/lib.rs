@@ -1,6 +1,6 @@
 //! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to run them in.
 //!
-//! This crate re-exports the workspace's crates and adds what joins them: the built-in tasks, names for tasks, worlds as
+//! This crate re-exports the workspace's crates and adds what connects them: the built-in tasks, names for tasks, worlds as
 //! tables, distances among variants of any tasks, picture distances, and the `driftworld` command. Only the command prints.
 //!
 //! ```

@@ -209,7 +209,7 @@ mod tests {
                 object.color = Some(Color(PAINTS[*paint]));
                 draft.objects.push(object);
             }
-            let world = draft.check().expect("the world is sound");
+            let world = draft.check().expect("the world is valid");
             let members: Vec<usize> = (0..paints.len()).collect();
             let found = MapColors::of(&Scene::from_world(&world)).of_group(&members);
             let count = |paint: usize| paints.iter().filter(|other| **other == paint).count();
@@ -245,8 +245,8 @@ mod tests {
     #[test]
     fn issue_24_groups_of_several_colors() {
         let of_class = |name: &str, class: &str| {
-            let variant = tasks::variant(name).expect("it is there");
-            let world = Sampler::new(&variant, 0).world(0).expect("it is drawn");
+            let variant = tasks::variant(name).expect("it is built in");
+            let world = Sampler::new(&variant, 0).world(0).expect("the world can be sampled");
             let objects = world.objects.iter().enumerate();
             let members: Vec<usize> = objects
                 .filter(|(_, object)| object.class == class)

@@ -19,7 +19,7 @@ pub(crate) const RING: Rgb = [255, 214, 0];
 pub(crate) const TRAIL: Rgb = [255, 120, 200];
 const PAYS: Rgb = [0, 110, 50];
 const COSTS: Rgb = [190, 0, 20];
-/// Maximum number of rewarding objects that have signs; with more, none has.
+/// Maximum number of rewarding objects that have signs; if there are more, none has a sign.
 const MAX_SIGNS: usize = 60;
 /// Smallest map, in pixels, that has signs: on a smaller one they would hide the objects beside them.
 const MIN_SIZE_FOR_SIGNS: u32 = 100;
@@ -296,7 +296,7 @@ mod tests {
         let mut world = WorldDraft::with_objects(objects);
         world.environment_params.map_size = [side, side];
         world.agent_params.coordinates = [side / 3.0, side / 3.0];
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     }
 
     fn drawn(world: &World, size: u32) -> Picture {
@@ -317,7 +317,7 @@ mod tests {
             let world = world(side, Vec::new());
             let scene = Scene::from_world(&world);
             let drawing = map(&world, &scene, &Moves::none(&world), size);
-            let label: f32 = drawing.texts().into_iter().find_map(|text| text.strip_suffix(" m")?.parse().ok()).expect("a label");
+            let label: f32 = drawing.texts().into_iter().find_map(|text| text.strip_suffix(" m")?.parse().ok()).expect("the bar has a label");
             let picture = drawing.to_picture();
             let black = |x: &usize, y: usize| pixel(&picture, *x, y) == [0, 0, 0];
             let longest = (0..size as usize).map(|y| (0..size as usize).filter(|x| black(x, y)).count()).max();
@@ -349,7 +349,7 @@ mod tests {
         fn oblong_arenas_have_oblong_maps(wide in 6.0..60.0_f64, deep in 6.0..60.0_f64, height in 60_u32..200) {
             let mut draft = WorldDraft::default();
             draft.environment_params.map_size = [wide, deep];
-            let world = draft.check().expect("the world is sound");
+            let world = draft.check().expect("the world is valid");
             let scene = Scene::from_world(&world);
             let [width, same] = map_size(&scene, height);
             prop_assert_eq!(same, height);
@@ -449,7 +449,7 @@ mod tests {
             let mut draft = WorldDraft::default();
             draft.environment_params.light_intensity = light;
             draft.environment_params.fog_distance = Some(5.0);
-            let world = draft.check().expect("the world is sound");
+            let world = draft.check().expect("the world is valid");
             drawn(&world, 100)
         };
         assert_eq!(bright(0.05), bright(2.3));

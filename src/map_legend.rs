@@ -329,7 +329,7 @@ mod tests {
         let mut draft = WorldDraft::with_objects(objects);
         draft.environment_params.map_size = [30.0, 30.0];
         draft.agent_params.coordinates = [10.0, 10.0];
-        let world = draft.check().expect("the world is sound");
+        let world = draft.check().expect("the world is valid");
         let mut scene = Scene::from_world(&world);
         let names = |scene: &Scene| -> Vec<String> {
             let drawing = map_with_legend(&world, scene, &Moves::none(&world), 300);
@@ -366,7 +366,7 @@ mod tests {
                 (zone.ends, zone.reward_on_entering) = (Some(ZoneEnd::Success), 7.0);
             }),
         ];
-        let world = draft.check().expect("the world is sound");
+        let world = draft.check().expect("the world is valid");
         let drawing = map_with_legend(&world, &Scene::from_world(&world), &Moves::none(&world), 300);
         let texts = drawing.texts();
         for name in [

@@ -1,4 +1,4 @@
-//! Writes files whole or not at all, and never over the files of a log.
+//! Writes files atomically, and never over the files of a log.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,7 +9,7 @@ use driftworld_text::{ShownPath, WordKind, removed};
 
 use crate::{Failure, overwrite};
 
-/// Starts a file that appears whole or not at all; a device or a pipe is written directly. Refuses to overwrite files of a log.
+/// Starts a file that is written atomically; a device or a pipe is written directly. Refuses to overwrite files of a log.
 pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
     if path == Path::new("-") {
         let advice = "expected the path of a file; give /dev/stdout for standard output";

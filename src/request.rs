@@ -1,5 +1,4 @@
-//! Requests: one struct per operation, whose fields are the command's arguments (clap) and Python's keywords (serde) at
-//! once.
+//! Requests: one struct per operation, whose fields are both the command's arguments (clap) and Python's keywords (serde).
 
 use std::fmt::Display;
 use std::str::FromStr;
@@ -36,7 +35,7 @@ pub(crate) fn usual<R: Args>() -> R {
     request.expect("each argument has a default or is optional")
 }
 
-/// Reads a word by a function.
+/// Deserialises a word with a parsing function.
 pub(crate) fn read<'de, D: Deserializer<'de>, T, E: Display>(
     deserializer: D,
     of: impl FnOnce(&str) -> Result<T, E>,
@@ -44,7 +43,7 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T, E: Display>(
     of(&String::deserialize(deserializer)?).map_err(D::Error::custom)
 }
 
-/// Reads a word as its type does.
+/// Deserialises a word with its type's `FromStr`.
 pub(crate) fn word<'de, D: Deserializer<'de>, T: FromStr<Err: Display>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {

@@ -126,9 +126,9 @@ mod tests {
             let mut object = Object::new("geometric", [share * half, 5.0]);
             object.scale = 1.0;
             draft.objects.push(object);
-            let world = draft.check().expect("the world is sound");
+            let world = draft.check().expect("the world is valid");
             let (scene, camera) = (Scene::from_world(&world), agent_camera(&world, 0.0));
-            let seen = sight(&mut Renderer::default(), &scene, &camera, &[0]).expect("it is drawn");
+            let seen = sight(&mut Renderer::default(), &scene, &camera, &[0]).expect("it renders");
             let (inner, rim) = (1.0 - 2.0 * f64::from(MARGIN) / f64::from(SIDE), 0.8 / half);
             if share.abs() < inner - rim {
                 prop_assert!(seen.is_enough(), "{seen:?}");

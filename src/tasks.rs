@@ -55,7 +55,7 @@ pub const FAMILIES: [Group; 8] = [
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaskError {
-    /// There is neither such a built-in task nor such a file.
+    /// Neither a built-in task nor a file has this name.
     #[error("{}", unknown(name))]
     Unknown {
         /// The name asked for.

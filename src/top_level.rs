@@ -25,12 +25,12 @@ impl TopLevel {
         Some(Self { keys: keys.collect() })
     }
 
-    /// Whether there is such a key.
+    /// Whether the object has this key.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.keys.contains_key(key)
     }
 
-    /// Whether there is any of these keys.
+    /// Whether the object has any of these keys.
     pub(crate) fn has_any(&self, keys: &[&str]) -> bool {
         keys.iter().any(|key| self.has(key))
     }

@@ -41,9 +41,9 @@ mod tests {
 
     #[test]
     fn log_gives_the_names_of_its_variants() {
-        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let info = r#"{ "made_from": { "berries#all-0.6-1": {}, "a_map.json": {} } }"#;
-        std::fs::write(folder.path().join("scenario_info.json"), info).expect("the folder is ours");
+        std::fs::write(folder.path().join("scenario_info.json"), info).expect("the folder is writable");
         let names = VariantNames::of_logs(&[folder.path(), Path::new("nowhere")]);
         assert_eq!(names.shown("berries_all061"), "berries#all-0.6-1");
         assert_eq!(names.shown("other_task"), "other_task");

@@ -517,13 +517,13 @@ mod tests {
                 object.scale = thing;
                 draft.objects.push(object);
             }
-            let world = draft.check().expect("the world is sound");
+            let world = draft.check().expect("the world is valid");
             let views = Views::new(&world, 180, 0.0);
             let scene = views.scene.clone().with_wall_tops();
             let camera = views.fit_all(&scene, views.overview_direction(&scene), 320);
             let mut instances = vec![0_u32; 180 * 320];
             let mut target = Target { width: 320, height: 180, instance: Some(&mut instances), ..Target::default() };
-            Renderer::default().draw(&scene, &camera, &mut target).expect("it is drawn");
+            Renderer::default().draw(&scene, &camera, &mut target).expect("it renders");
             for number in 1..=4_u32 {
                 let pixels: Vec<usize> = (0..instances.len()).filter(|at| instances[*at] == number).collect();
                 prop_assert!(pixels.len() >= 4, "{number}: {} pixels", pixels.len());
@@ -542,17 +542,17 @@ mod tests {
             let (_, variant) = variants.expect("it is a task").swap_remove(0);
             let world = driftworld_generator::Sampler::new(&variant, 0)
                 .world(0)
-                .expect("it is drawn");
+                .expect("it renders");
             let views = Views::new(&world, 64, 0.0);
             let things: std::collections::BTreeSet<String> = world.objects.iter().map(map_legend::named).collect();
-            let close_ups = views.close_ups(5).expect("they are drawn");
+            let close_ups = views.close_ups(5).expect("they render");
             assert_eq!(close_ups.len(), things.len().min(5), "{name}");
             let mut shown = 0;
             for index in 0..world.objects.len() {
-                let Some(camera) = views.near(index).expect("it is drawn") else {
+                let Some(camera) = views.near(index).expect("it renders") else {
                     continue;
                 };
-                let seen = sight(&mut Renderer::default(), &views.scene, &camera, &[index]).expect("it is drawn");
+                let seen = sight(&mut Renderer::default(), &views.scene, &camera, &[index]).expect("it renders");
                 assert!(seen.pixels > MIN_CLOSE_UP_PIXELS, "{name}: {index}");
                 shown += 1;
             }

@@ -19,7 +19,7 @@ mod reference_data;
 mod task_docs;
 mod tier;
 
-/// Whether to test the case with this number: in the quick tier one case of `of`, in the full tier all.
+/// Whether to test the case with this number: one in `of` cases in the quick tier, all cases in the full tier.
 fn is_turn(number: usize, of: usize) -> bool {
     tier::quick_or_full(number.is_multiple_of(of), true)
 }

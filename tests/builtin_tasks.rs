@@ -40,7 +40,7 @@ fn check(task: &str) {
         let name = variant.id();
         for index in 0..WORLDS {
             let solved = if COSTLY.contains(&name.as_str()) {
-                let mut still = ScriptedAgent::parse("still", "step").expect("the script is sound");
+                let mut still = ScriptedAgent::parse("still", "step").expect("the script is valid");
                 let (earned, seconds, last) = run_episode(&variant, index, &mut still);
                 let haste = variant
                     .value("haste")

@@ -1,4 +1,4 @@
-//! Tests the curricula in `examples/curricula/`: they are sound, change only what they claim, and can be run.
+//! Tests the curricula in `examples/curricula/`: they are valid, change only what they claim, and can be run.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -121,12 +121,12 @@ fn curriculum_across_tasks_learns_each_of_them() {
 
 #[test]
 fn training_and_evaluation_share_no_world() {
-    for file in std::fs::read_dir(path("reward").with_file_name("")).expect("the folder is there") {
+    for file in std::fs::read_dir(path("reward").with_file_name("")).expect("the folder exists") {
         let file = file.expect("the folder can be listed").path();
         let name = file
             .file_stem()
             .and_then(|stem| stem.to_str())
-            .expect("names are plain");
+            .expect("file names are UTF-8");
         let scenario = scenario(name);
         let seeds = |kind| {
             let blocks = scenario.blocks.iter().filter(move |block| block.kind == kind);

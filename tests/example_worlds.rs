@@ -17,7 +17,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 fn check(group: &str) {
     let (_, families) = tasks::groups()
         .find(|(known, _)| *known == group)
-        .unwrap_or_else(|| panic!("there is a group {group}"));
+        .unwrap_or_else(|| panic!("there is no group {group}"));
     for (name, text) in families {
         let task = TaskSpec::from_json(name, text).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(task.name(), *name);

@@ -1,5 +1,5 @@
-//! The table of fields is true for each place of a world: a parameter can set it, and its value arrives in the drawn world;
-//! worlds that differ only there differ in exactly the named comparisons.
+//! Checks the table of fields for each place of a world: a parameter can set it, its value appears in the sampled world, and
+//! worlds that differ only there differ in exactly the documented comparisons.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -203,13 +203,13 @@ fn first(place: &FieldPlace, full: &Json) -> String {
 fn drawn(name: &str, template: &Json, tried: &Json) -> World {
     let task = json!({ "name": "t", "world": template, "parameters": { "tried": tried } });
     let task = TaskSpec::from_json(name, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
-    let variant = task.variant("default").expect("it is always there");
+    let variant = task.variant("default").expect("it always exists");
     let world = Sampler::new(&variant, 3).world(0);
     world.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 #[test]
-fn every_place_takes_a_parameter_and_what_it_says_arrives_there_and_nowhere_else() {
+fn parameter_sets_exactly_its_own_place() {
     for place in World::places() {
         let Some(kind) = place.kind else { continue };
         let full = full_with(place);
@@ -248,7 +248,7 @@ fn world_of(task: &Arc<TaskSpec>, variant: &str) -> World {
 }
 
 #[test]
-fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_values() {
+fn json_parameter_at_every_place_changes_the_documented_elements() {
     for place in places_in_turn() {
         let full = full_with(place);
         let pointer = first(place, &full);
@@ -267,7 +267,7 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
         *at(&mut template, &pointer) = second;
         assert_eq!(world_of(&task, "second"), plain(&template), "{pointer}");
         let [first, second] = ["first", "second"].map(|name| task.variant(name).expect("it is declared"));
-        let distance = variant_distance(&first, &second, &Weights::default()).expect("they are of one task");
+        let distance = variant_distance(&first, &second, &Weights::default()).expect("both belong to the same task");
         let row_elements: BTreeSet<Element> = place
             .field
             .compared
@@ -343,13 +343,13 @@ fn every_place_takes_a_random_choice_from_a_list() {
         *at(&mut template, &pointer) = json!({ "choice": { "values": listed } });
         let task = json!({ "name": "t", "world": template });
         let task = TaskSpec::from_json(&pointer, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
-        let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 3);
+        let sampler = Sampler::new(&task.variant("default").expect("it always exists"), 3);
         let mut seen = [false; 2];
         for index in 0..crate::tier::quick_or_full(16, 40) {
             let world = sampler
                 .world(index)
                 .unwrap_or_else(|error| panic!("{pointer}: {error}"));
-            let unseeded = |world: &World| world.clone().edit(|world| world.seed = None).expect("it stays sound");
+            let unseeded = |world: &World| world.clone().edit(|world| world.seed = None).expect("it stays valid");
             let which = either.iter().position(|either| unseeded(either) == unseeded(&world));
             seen[which.unwrap_or_else(|| panic!("{pointer}: neither of the two"))] = true;
         }

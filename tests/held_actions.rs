@@ -18,7 +18,7 @@ struct Course {
 
 /// Runs a whole episode with one motion.
 fn live(world: &WorldDraft, motion: [f64; 3]) -> Course {
-    let mut environment = Environment::new(world.clone().check().expect("the world is sound"));
+    let mut environment = Environment::new(world.clone().check().expect("the world is valid"));
     let mut truncated = false;
     while !environment.ended() {
         let step = environment.step(Action::Continuous(motion));
@@ -44,7 +44,7 @@ fn draw(variant: &Variant) -> WorldDraft {
 fn held_action_gets_reward_and_limit_by_the_second() {
     let mut cut_off = 0;
     for task in tasks::built_in_names() {
-        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let variants = tasks::variants(task).expect("built-in tasks are valid");
         for (number, variant) in variants.iter().enumerate().step_by(3) {
             let mut world = draw(variant);
             for motion in [[0.0; 3], [1.0 + number as f64 / 4.0, 9.0, 0.0], [5.0, -40.0, 0.0]] {
@@ -68,7 +68,7 @@ fn held_action_gets_reward_and_limit_by_the_second() {
 #[test]
 fn time_step_of_any_length_gets_reward_and_limit_by_the_second() {
     for task in tasks::built_in_names() {
-        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let variants = tasks::variants(task).expect("built-in tasks are valid");
         let mut world = draw(&variants[0]);
         world.objects.clear();
         let limit = world.max_seconds;
@@ -90,10 +90,10 @@ fn time_step_of_any_length_gets_reward_and_limit_by_the_second() {
 fn held_variants_change_only_the_transitions() {
     let mut compared = 0;
     for task in tasks::built_in_names() {
-        let variants = tasks::variants(task).expect("built-in tasks are sound");
-        let first = draw(&variants[0]).check().expect("the world is sound");
+        let variants = tasks::variants(task).expect("built-in tasks are valid");
+        let first = draw(&variants[0]).check().expect("the world is valid");
         for held in variants.iter().filter(|variant| variant.name().ends_with("held")) {
-            let world = draw(held).check().expect("the world is sound");
+            let world = draw(held).check().expect("the world is valid");
             assert!(world.agent_params.frame_skip > 1, "{}", held.id());
             let distance = world_distance(&first, &world, &Weights::default());
             assert_eq!(distance.differs_in(), [Element::T], "{}", held.id());
@@ -113,7 +113,7 @@ fn remaining_steps_follow_from_a_limit_of_seconds() {
     };
     world.agent_params.frame_skip = 4;
     world.agent_params.state_features = vec![StateFeature::StepsLeft];
-    let mut environment = Environment::new(world.check().expect("the world is sound"));
+    let mut environment = Environment::new(world.check().expect("the world is valid"));
     let mut left = vec![environment.state_vector()[0]];
     while !environment.ended() {
         environment

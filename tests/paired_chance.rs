@@ -106,7 +106,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/objects/*/solid", Moves),
     ("/objects/*/pushable", Moves),
     ("/objects/*/reward", Ends),
-    // An object that has paid counts as collected, and then the next of a sequence can be destroyed.
+    // An object that has paid counts as collected, and then the next object of its sequence can be destroyed.
     ("/objects/*/reward_probability", Moves),
     ("/objects/*/reward_stimulus", Moves),
     ("/objects/*/reward_once_stimulus", Moves),
@@ -173,17 +173,17 @@ fn documents() -> Vec<Value> {
 fn worlds() -> Vec<World> {
     let mut worlds = Vec::new();
     for (number, task) in tasks::built_in_names().into_iter().enumerate() {
-        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let variants = tasks::variants(task).expect("built-in tasks are valid");
         let variant = &variants[(7 * number + 3) % variants.len()];
         let world = draw(variant, number as u64, 5).edit(|world| {
             add_examples(world);
-            // Every other world has no seed, so that the positions of objects decide.
+            // Every other world has no seed, so that the positions of objects determine their random numbers.
             world.seed = world.seed.filter(|_| number % 2 == 0);
             if number % 2 == 0 {
                 world.environment_params.looks = Looks::default();
             }
         });
-        worlds.push(world.expect("the world is sound"));
+        worlds.push(world.expect("the world is valid"));
     }
     worlds
 }
@@ -351,7 +351,7 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
     let gone: Vec<&(&str, Verdict)> = gone.collect();
     assert!(gone.is_empty(), "no document has these keys: {gone:?}");
 
-    // Parts that only some documents contain are added whole to all worlds.
+    // Parts that only some documents contain are added to all worlds as a whole.
     let wholes = ["/image_params", "/rules/shaping", "/rules/success", "/rules/failure"];
     let mut keys: BTreeSet<String> = VERDICTS
         .iter()
@@ -391,7 +391,7 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
             }
             (world.rules.success, world.rules.failure) = (Vec::new(), Vec::new());
         });
-        let after = paths_of(&changed.expect("the world is sound"), seed);
+        let after = paths_of(&changed.expect("the world is valid"), seed);
         if first_difference(&before, &after).is_some() || after.len() < STEPS {
             let culprits = keys.iter().filter_map(|key| {
                 let alone = change(world, key, &examples_of(key))?;
@@ -424,7 +424,7 @@ fn endings_do_not_change_paths_before_the_end() {
         document[key] = value;
         let ending = World::from_json(key, &document.to_string()).unwrap_or_else(|error| panic!("{error}"));
         let after = paths_of(&ending, 9);
-        assert!(after.len() < STEPS, "{key} ends it");
+        assert!(after.len() < STEPS, "{key} ends the episode");
         assert_eq!(first_difference(&before, &after), None, "{key}");
     }
 }
@@ -433,7 +433,7 @@ fn endings_do_not_change_paths_before_the_end() {
 fn pay_and_light_do_not_move_wandering_balls() {
     let task = tasks::variants("moving_object").expect("it is built in");
     let positions = |name: &str| {
-        let variant = task.iter().find(|variant| variant.name() == name).expect("it is there");
+        let variant = task.iter().find(|variant| variant.name() == name).expect("it exists");
         let mut environment = Environment::new(draw(variant, 3, 0));
         for _ in 0..60 {
             environment
@@ -453,7 +453,7 @@ fn pay_and_light_do_not_move_wandering_balls() {
 #[test]
 fn variants_of_a_task_share_the_seeds_of_worlds_and_of_objects() {
     for task in tasks::built_in_names() {
-        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let variants = tasks::variants(task).expect("built-in tasks are valid");
         let seeds = |variant: &Variant, seed: u64, index: u64| {
             let world = draw(variant, seed, index);
             let own = world

@@ -51,7 +51,7 @@ fn run_recorded(world: &World, agent: &mut dyn Agent, seed: u64, max_steps: u32)
     let mut ended_by = None;
     while !environment.ended() && recorder.num_steps() < max_steps {
         let action = agent.act(&environment);
-        let step = environment.step(action).expect("agents act as the world allows");
+        let step = environment.step(action).expect("the agent's action is valid");
         recorder.step(action);
         ended_by = step.ended_by;
         course.push(observed(&mut environment, step.reward, step.ended_by));
@@ -310,7 +310,7 @@ fn divergent_replay_is_reported() {
                 .world
                 .clone()
                 .edit(|world| world.objects[0].coordinates[0] += 5.0);
-            recording.world = moved.expect("it is sound");
+            recording.world = moved.expect("it is valid");
         },
         "found",
     );

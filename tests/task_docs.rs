@@ -162,12 +162,12 @@ fn check(page: &str, write: impl Fn(&mut String)) {
         let line = number + 1;
         assert_eq!(
             found, expected,
-            "{page}:{line}; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
+            "{page}:{line}; DRIFTWORLD_UPDATE_GOLDEN=1 rewrites the tables"
         );
     }
     assert_eq!(
         found, expected,
-        "{page}; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
+        "{page}; DRIFTWORLD_UPDATE_GOLDEN=1 rewrites the tables"
     );
 }
 

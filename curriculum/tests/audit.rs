@@ -34,7 +34,7 @@ fn audit_rows(options: &Design) -> Vec<AuditRow> {
         repeats: 8,
     };
     let rows = audit(&scenario, &mut plan, folder.path(), short).unwrap_or_else(|error| panic!("{error}"));
-    let num_left = std::fs::read_dir(folder.path()).expect("the folder is there").count();
+    let num_left = std::fs::read_dir(folder.path()).expect("the folder exists").count();
     assert_eq!(num_left, 0, "the logs are removed");
     rows
 }
@@ -96,7 +96,7 @@ fn drift_audit_shows_forgetting() {
     };
     let rows = audit_rows(&sized(drifting));
     assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
-    // No expert learns the drift alone.
+    // There is no single-task expert for a drift.
     for row in &rows[2..4] {
         assert!(
             row.found.starts_with("a drift is learned under a name of its own"),

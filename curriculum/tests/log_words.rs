@@ -49,7 +49,7 @@ fn run_scenario(log: &Path, max_experiences: u64, resume: bool) -> Result<(), Cu
     Ok(())
 }
 
-/// The texts in a column; `None` without such a column.
+/// The texts in a column; `None` if the log has no such column.
 fn words(log: &Path, column: &str) -> Option<Vec<String>> {
     let text = std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file");
     let mut rows = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());

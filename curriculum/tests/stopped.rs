@@ -28,7 +28,7 @@ fn plan() -> Plan {
     plan_of_worlds(&scenario, |_| world.clone())
 }
 
-/// Acts at random, and sets a flag before a given step; steps are counted over all its copies.
+/// Acts at random, and sets a flag before a given step; steps are counted across all its copies.
 #[derive(Clone)]
 struct Stopper {
     random: RandomAgent,
@@ -84,7 +84,7 @@ fn run_scenario(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
 }
 
 #[test]
-fn a_run_stops_at_any_step_and_goes_on_to_the_same_log() {
+fn run_stopped_at_any_step_resumes_to_the_same_log() {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let whole = folder.path().join("whole");
     let (summary, steps) = run_scenario(&whole, 1, u64::MAX);

@@ -1,5 +1,5 @@
-//! Worlds that cannot be drawn: they stop a run or are skipped, consistently for any number of jobs, and are found before the
-//! run.
+//! Worlds that cannot be drawn: they stop a run or are skipped, consistently for any number of jobs, and are detected before
+//! the run.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -173,7 +173,7 @@ fn worlds_are_tried_before_the_run() {
         "{progresses:?}"
     );
     assert!(plan.try_worlds(2, &mut tried).is_empty(), "all worlds have been tried");
-    // All worlds: each that cannot be run is found; the second evaluation has the same worlds as the first.
+    // With all worlds, every one that cannot be run is found; the second evaluation has the same worlds as the first.
     let all = plan.try_worlds(u32::MAX, &mut Tried::default());
     let found: Vec<u64> = all
         .iter()

@@ -1,4 +1,4 @@
-//! All forms of actions, and rules about steps: frame skip, penalties for wrong order, shaping.
+//! All action formats, and rules about steps: frame skip, penalties for wrong order, shaping.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle, Warning};
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, WorldDraft};
@@ -45,7 +45,7 @@ fn normalised_actions_scale_to_the_agents_limits() {
     assert!((speed - 5.0).abs() < 1e-4, "{speed}");
     environment
         .step(Action::Continuous([0.0, 7.0, 0.0]))
-        .expect("beyond 1 is cut off");
+        .expect("values beyond 1 are clamped");
     assert_eq!(environment.agent().heading_deg, 18.0);
 }
 
@@ -123,12 +123,12 @@ fn held_action_lasts_several_time_steps_of_one_step() {
         )
     };
     let (single, held) = (run(1, 8), run(4, 2));
-    assert_eq!(single.0, held.0, "the same way");
+    assert_eq!(single.0, held.0, "the same trajectory");
     assert_eq!((single.1, held.1), (8, 2));
     assert_eq!(
         (single.2 + 4.0, held.2 + 1.0),
         (2.0, 2.0),
-        "the step's own reward is paid once a step"
+        "the step reward is paid once per step"
     );
 }
 
@@ -151,7 +151,7 @@ fn touching_out_of_turn_costs_the_penalty() {
     let mut world = WorldDraft::with_objects(vec![first, second]);
     world.rules.order_penalty = -3.0;
     let mut environment = start(world);
-    assert_eq!(drive(&mut environment, 10.0, 3), -3.0, "the second before the first");
+    assert_eq!(drive(&mut environment, 10.0, 3), -3.0, "second before first");
     assert_eq!(drive(&mut environment, -10.0, 6), 5.0);
     assert_eq!(drive(&mut environment, 10.0, 6), 5.0);
 }
@@ -275,7 +275,7 @@ fn huge_waypoints_are_accepted() {
     for far in [1e20, 1e39, f64::MAX] {
         environment
             .step(Action::Continuous([far, 0.0, 0.0]))
-            .expect("a finite number is a place");
+            .expect("every finite waypoint is valid");
     }
     let [x, y] = environment.agent().position;
     assert!((x - 3.0).abs() < 1e-3 && y.abs() < 1e-3, "{x}, {y}");
@@ -310,5 +310,5 @@ fn arm_that_did_not_pay_may_pay_later() {
             .expect("the episode continues")
             .reward;
     }
-    assert_eq!(paid, 1.0, "once, however often it is touched");
+    assert_eq!(paid, 1.0, "it pays once, however often it is touched");
 }

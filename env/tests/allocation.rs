@@ -1,5 +1,5 @@
 //! Stepping a batch does not allocate, and heaps of bodies allocate memory in proportion to their size. A separate binary,
-//! because the counters are those of the whole process.
+//! because the counters cover the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
         grows_by(layout.size());
-        // SAFETY: the caller's guarantees are those of the system's allocator.
+        // SAFETY: the caller upholds the contract of the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -141,7 +141,7 @@ fn count_allocations(world: World, num_threads: usize, steps: usize) -> (u64, f6
         num_threads,
         ..BatchOptions::default()
     };
-    let mut batch = Batch::new(NUM_ENVS, source, options).expect("the scene starts");
+    let mut batch = Batch::new(NUM_ENVS, source, options).expect("the scene is valid");
     let actions: [Action; NUM_ENVS] =
         std::array::from_fn(|env| Action::Continuous([4.0 + env as f64, 20.0 - 3.0 * env as f64, 1.0]));
     // Lists reach their final size in the first steps.
@@ -160,10 +160,10 @@ fn count_allocations(world: World, num_threads: usize, steps: usize) -> (u64, f6
 #[test]
 fn steps_do_not_allocate() {
     let (taken_alone, paid) = count_allocations(world(), 1, 300);
-    assert!(paid > 10.0, "things happen in these steps: {paid}");
+    assert!(paid > 10.0, "objects pay in these steps: {paid}");
     assert_eq!(taken_alone, 0, "on one thread");
     let (taken_beside_a_body, _) = count_allocations(world_with_a_far_body(), 1, 300);
-    assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
+    assert_eq!(taken_beside_a_body, 0, "a body that is not pushed");
     let (taken_by_things, paid) = count_allocations(world_with_things(), 1, 600);
     assert!(paid > 20.0, "doors open and things are picked up: {paid}");
     assert_eq!(taken_by_things, 0, "doors, switches and things");
@@ -172,16 +172,16 @@ fn steps_do_not_allocate() {
         world.agent_params.modalities = vec![Modality::Rgb];
     });
     let (taken_by_hands, _) = count_allocations(seen.expect("the world is valid"), 1, 600);
-    assert_eq!(taken_by_hands, 0, "pictures of what is carried");
+    assert_eq!(taken_by_hands, 0, "images of carried objects");
     // Passing work to another thread allocates one block, and one more for the pool's queue once every 63 times, whatever the
     // number of environments.
     let (taken_by_two, _) = count_allocations(world(), 2, 300);
     assert!(taken_by_two <= 310, "on two threads: {taken_by_two} in 300 steps");
-    heaps_take_memory_in_proportion();
+    heap_memory_is_proportional_to_the_number_of_bodies();
 }
 
-/// Regression test: a thousand cubes at one place took two gigabytes, for contacts of each with all others.
-fn heaps_take_memory_in_proportion() {
+/// Regression test: a thousand cubes in one place took two gigabytes for the contacts between all pairs.
+fn heap_memory_is_proportional_to_the_number_of_bodies() {
     for count in [250, 1000, 4000] {
         let body = |_| {
             let mut body = Object::new("cube", [0.0, 0.9]);

@@ -87,7 +87,7 @@ fn assert_matches(outputs: &driftworld_env::Outputs, env: usize, alone: &Environ
         images.instance[env * pixels..][..pixels] == frame.instance,
         "instances of {env}"
     );
-    assert!(images.class.is_empty(), "nobody asked for classes");
+    assert!(images.class.is_empty(), "no classes were requested");
     assert_eq!(
         outputs.states[env * outputs.state_len..][..outputs.state_len],
         alone.state_vector()[..]
@@ -95,7 +95,7 @@ fn assert_matches(outputs: &driftworld_env::Outputs, env: usize, alone: &Environ
 }
 
 #[test]
-fn a_batch_is_so_many_environments() {
+fn batch_equals_separate_environments() {
     for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
         for num_threads in [1, 2, 3] {
             let mut batch = batch(autoreset, num_threads);
@@ -209,7 +209,7 @@ fn missing_world_stops_only_its_environment() {
         };
         let mut batch = Batch::new(64, Arc::clone(&source), options).expect("the first episodes have worlds");
         let still = [Action::Continuous([0.0; 3]); 64];
-        batch.step(&still).expect("all step");
+        batch.step(&still).expect("every environment steps");
         for _ in 0..2 {
             let error = batch
                 .step(&still)
@@ -223,9 +223,9 @@ fn missing_world_stops_only_its_environment() {
     }
 }
 
-/// A batch that does not fit into a processor's cache is stepped differently from a small one.
+/// A batch that does not fit into the CPU cache is stepped differently from a small one.
 #[test]
-fn large_batch_equals_its_environments_alone() {
+fn large_batch_equals_separate_environments() {
     const MANY: usize = 150;
     for num_threads in [1, 3] {
         let options = BatchOptions {
@@ -240,7 +240,7 @@ fn large_batch_equals_its_environments_alone() {
             let actions: Vec<Action> = (0..MANY).map(|env| action(step, env)).collect();
             batch.step(&actions).expect("the actions are valid");
             for (env, alone) in alone.iter_mut().enumerate() {
-                // Targets are reached at different times; episodes after the first are tested with few environments.
+                // Targets are reached at different times; later episodes are tested with smaller batches.
                 if !alone.ended() {
                     let found = alone.step(actions[env]).expect("the action is valid");
                     assert_eq!(batch.outputs().rewards[env], found.reward, "step {step} of {env}");
@@ -293,7 +293,7 @@ fn too_large_outputs_are_refused_before_allocating() {
     // are 17.18 GB.
     let made = |num_envs, autoreset| {
         let source: WorldSource = Arc::new(move |episode| {
-            assert_eq!(episode.env, 0, "the first world says how large all are");
+            assert_eq!(episode.env, 0, "the first world determines the size of all");
             Ok(large(episode))
         });
         Batch::new(num_envs, source, options(autoreset)).err()

@@ -1,4 +1,4 @@
-//! Worlds of a batch may request different images: each environment has those of its world, and 0 in the others.
+//! Worlds of a batch may request different images: each environment fills the images of its own world and leaves the others 0.
 
 use std::sync::Arc;
 

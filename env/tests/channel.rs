@@ -26,7 +26,7 @@ fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) 
         .messages
 }
 
-/// The original's messages; prints a note if they are skipped.
+/// The original's messages; if they are missing, prints that the test is skipped.
 fn original() -> Option<Value> {
     let path = reference("l2explorer/channel_messages.json")?;
     let text = std::fs::read_to_string(path).expect("the original's messages are text");
@@ -39,7 +39,7 @@ fn every_message_of_the_original_is_understood() {
     let (mut environment, mut channels) = start();
     let mut answers = Vec::new();
     for test in messages["tests"].as_array().expect("a list of messages") {
-        let channel = Channel::from_name(test["channel"].as_str().expect("each names its channel")).expect("of three");
+        let channel = Channel::from_name(test["channel"].as_str().expect("it has a channel")).expect("it is known");
         let text = test["message"].to_string();
         let received = channels.receive(&mut environment, channel, &text, NOW);
         if let Some(picture) = &received.screenshot {
@@ -71,8 +71,8 @@ fn every_message_of_the_original_is_understood() {
         .expect("the episode continues");
     let told = channels.after_step(&environment, &step, NOW);
     assert_eq!(told.len(), 1);
-    let state = told[0].payload.as_ref().expect("a state has its parts");
-    assert_eq!(state.as_object().expect("an object").len(), 1);
+    let state = told[0].payload.as_ref().expect("a state has a payload");
+    assert_eq!(state.as_object().expect("it is an object").len(), 1);
     let y = state["agent_params"]["coordinates"][1].as_f64().expect("a number");
     assert!((y - 10.1).abs() < 1e-5, "1 m/s for 0.1 s from 10: {y}");
 }
@@ -86,7 +86,7 @@ fn answers_have_every_key_that_clients_look_up() {
     let read: Value = serde_json::from_str(&answer.to_json()).expect("messages are JSON");
     let keys: Vec<&str> = read
         .as_object()
-        .expect("an object")
+        .expect("it is an object")
         .keys()
         .map(String::as_str)
         .collect();
@@ -112,11 +112,11 @@ fn reported_objects_are_present_and_named() {
         .step(Action::Continuous([0.0; 3]))
         .expect("the episode continues");
     let told = channels.after_step(&environment, &step, NOW);
-    let state = told[0].payload.as_ref().expect("a state has its parts");
+    let state = told[0].payload.as_ref().expect("a state has a payload");
     assert_eq!(state["game_mode"], "learn");
     let names: Vec<&str> = state["objects"]
         .as_array()
-        .expect("a list")
+        .expect("it is a list")
         .iter()
         .filter_map(|object| object["unique_name"].as_str())
         .collect();
@@ -153,7 +153,7 @@ fn check(channel: Channel, text: &str, expected: &str) {
 }
 
 #[test]
-fn positions_in_our_own_copy_are_not_reported() {
+fn errors_do_not_give_positions_in_our_own_copy_of_the_message() {
     let (mut environment, mut channels) = start();
     let spawn =
         json!({ "action": "object_create", "unique_name": "", "payload": { "class": "rock", "coordinates": [9, 9] } });
@@ -231,12 +231,12 @@ fn observed_parts_are_sent_each_step_without_absent_objects() {
             .expect("the episode continues");
         channels.after_step(environment, &step, NOW)
     };
-    assert_eq!(told(&mut environment, &mut channels), [], "nobody has asked yet");
+    assert_eq!(told(&mut environment, &mut channels), [], "nothing is requested");
     let watch = json!({ "action": "set_active_observers", "payload": { "state": ["Objects", "objects"] } });
     assert_eq!(ask(&mut environment, &mut channels, &watch)[0].action, "ok");
     let objects = |messages: &[Outgoing]| {
         let payload = messages[0].payload.clone().expect("a state has a payload");
-        payload["objects"].as_array().expect("a list").len()
+        payload["objects"].as_array().expect("it is a list").len()
     };
     let first = told(&mut environment, &mut channels);
     assert_eq!((first[0].action, objects(&first)), ("state", 1));

@@ -1,4 +1,5 @@
-//! Touching and approaching: the stimuli of a pass depend neither on the speed nor on the time step.
+//! Touching and approaching: the stimuli that occur as the agent passes an object depend neither on its speed nor on the time
+//! step.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -47,7 +48,7 @@ fn touchable(class: &str, at: [f64; 2]) -> Object {
     object
 }
 
-/// From more than a metre per step down to a centimetre.
+/// Speeds and time steps: from more than a metre per step down to a centimetre.
 const PACES: [(f64, f64); 7] = [
     (1.0, 0.1),
     (2.0, 0.1),
@@ -73,7 +74,7 @@ proptest! {
         (object.scale, object.heading, object.solid) = (scale, heading, solid);
         let mut world = WorldDraft::with_objects(vec![object]);
         let reach = f64::from(start(world.clone()).scene().items[0].asset.collider.radius()) * scale;
-        // Walked into off-centre, and held until past it.
+        // The agent hits the object off-centre and keeps walking until it is past it.
         let room = if class == "cube" { reach / 1.5 } else { reach };
         world.agent_params.coordinates = [off * room, -reach - 4.0];
         for (speed, seconds) in PACES {

@@ -177,7 +177,7 @@ fn moment(environment: &mut Environment, step: Step) -> Moment {
 /// The agent's behaviour after the world was saved.
 #[derive(Clone, Copy, Debug)]
 enum Then {
-    /// The expert continues to the goal, planning from what it finds.
+    /// The expert continues to the goal and plans from the current state.
     Expert,
     /// Random actions, until the energy is used up or the goal happens to be touched.
     Anything(u64),
@@ -209,7 +209,7 @@ proptest! {
         let read = World::from_json("state", &text).map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert!(read.progress.is_some());
         let mut resumed = Environment::new(read);
-        prop_assert_eq!(resumed.state().to_json(), text, "the state of a state is that state");
+        prop_assert_eq!(resumed.state().to_json(), text, "saving the resumed world gives the same document");
         prop_assert_eq!(resumed.observe().rgb.clone(), environment.observe().rgb.clone());
 
         let mut agent: Box<dyn Agent> = match then {

@@ -40,7 +40,7 @@ fn wanderer(at: [f64; 2]) -> Object {
     object
 }
 
-/// Respawns near the same point as all others.
+/// An object that respawns near the same point as all others.
 fn returning(at: [f64; 2]) -> Object {
     let mut object = Object::new("barrel", at);
     object.range_stimulus_distance = 50.0;
@@ -95,7 +95,7 @@ fn heaps_of_ten_thousand_can_be_stepped() {
 }
 
 #[test]
-fn heap_is_pushed_apart_or_holds_and_stops_the_agent() {
+fn heap_gives_way_or_stops_the_agent() {
     let mut environment = start(crowd(&[pushable], 1000, 0.0));
     for _ in 0..30 {
         environment
@@ -103,7 +103,7 @@ fn heap_is_pushed_apart_or_holds_and_stops_the_agent() {
             .expect("the episode continues");
     }
     let [_, y] = environment.agent().position;
-    assert!(y < 1.0, "it came to {y}");
+    assert!(y < 1.0, "the agent reached y = {y}");
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn heap_gives_a_warning_with_place_and_size() {
     };
     assert!(heaps(200).is_empty());
     let warnings = heaps(1000);
-    assert_eq!(warnings.len(), 1, "the first of them stands for all");
+    assert_eq!(warnings.len(), 1, "only the first body is reported");
     assert!(
         warnings[0].starts_with(
             "/objects/0/coordinates: found 999 bodies in the place of one that can be pushed, expected at most 256"
@@ -150,9 +150,9 @@ proptest! {
         let there = World::from_json("state", &written).expect("a state is a valid world");
         let mut there = start(there.into_draft());
         prop_assert_eq!(go(&mut there, 3), paid);
-        prop_assert!(places(&there) == places(&here), "after a state");
+        prop_assert!(places(&there) == places(&here), "resumed from a state");
         here.restore(&moment);
         prop_assert_eq!(go(&mut here, 3), paid);
-        prop_assert!(places(&there) == places(&here), "after a snapshot");
+        prop_assert!(places(&there) == places(&here), "restored from a snapshot");
     }
 }

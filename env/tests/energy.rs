@@ -40,7 +40,7 @@ fn thing(at: [f64; 2]) -> Object {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-    /// Energy decreases per second and per metre, and ends the episode at the same time with every time step.
+    /// Energy decreases per second and per metre, and ends the episode at the same simulated time for every time step.
     #[test]
     fn energy_falls_with_time_and_distance_and_ends_the_episode(
         begin in 1.0..50.0f64,

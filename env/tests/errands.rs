@@ -341,6 +341,6 @@ proptest! {
                 prop_assert_eq!(other.state().to_json(), environment.state().to_json());
             }
         }
-        prop_assert!(environment.num_steps() < 3000, "it has its success");
+        prop_assert!(environment.num_steps() < 3000, "the episode ends in success");
     }
 }

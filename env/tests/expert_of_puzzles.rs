@@ -163,8 +163,8 @@ fn puzzle() -> impl Strategy<Value = Puzzle> {
         })
 }
 
-/// The return and the cause of the end for an agent that carries a ball through a ford in lava to a box. The lava ends the
-/// episode, or costs 20 on entering and 1 per second.
+/// The return and the cause of the end of an episode in which the agent carries a ball through a ford in lava to a box. The
+/// lava ends the episode, or costs 20 on entering and 1 per second.
 fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discrete: bool) -> (f64, Option<EndedBy>) {
     let mut world = hall();
     world.agent_params.coordinates = [-key_x, -5.0];
@@ -312,7 +312,7 @@ proptest! {
         let (paid, ended_by) = carried_past_lava([100.0, key_x, thickness], false, is_discrete);
         prop_assert!(ended_by == Some(EndedBy::Delivered) && paid <= -40.0, "{:?} {}", ended_by, paid);
         let came_of_it = carried_past_lava([100.0, key_x, thickness], true, is_discrete);
-        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "who is shut in stays there");
+        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "an enclosed agent does not cross the lava");
     }
 
     /// If the only goal is a zone behind a door, the expert goes there and stays.
@@ -383,7 +383,7 @@ fn saved_plan_resumes_bit_for_bit() {
                 );
             }
         }
-        assert!(environment.num_steps() < 4000, "it has its success");
+        assert!(environment.num_steps() < 4000, "the episode ends in success");
         if let Some(other) = other {
             assert_eq!(other.state().to_json(), environment.state().to_json());
         }

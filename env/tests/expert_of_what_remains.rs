@@ -150,5 +150,5 @@ fn thing_in_the_way_is_picked_up() {
         );
     }
     let (ended_by, success, _) = behind(0, 0.8);
-    assert!(!success, "{ended_by:?}: there is no way");
+    assert!(!success, "{ended_by:?}: there is no path");
 }

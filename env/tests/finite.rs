@@ -119,7 +119,7 @@ fn world(dice: &mut Dice) -> World {
         world.agent_params.supersampling = 1;
         world.agent_params.frame_skip = world.agent_params.frame_skip.min(20);
     });
-    small.expect("the looks do not affect validity")
+    small.expect("these settings fit every valid world")
 }
 
 /// Number of worlds to try; `DRIFTWORLD_FINITE` overrides it.

@@ -1,7 +1,7 @@
 //! Malicious or broken files: each is refused with its own message, within the limits, without a panic.
 //!
 //! The corpus is in `tests/hostile/`: each file with its message beside it. It is generated here; `DRIFTWORLD_UPDATE_HOSTILE=1`
-//! rewrites it. A file that is not generated any more, or differs, fails the test.
+//! rewrites it. A file that is no longer generated, or differs, fails the test.
 #![cfg(feature = "gltf")]
 
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ fn options() -> ImportOptions {
 
 fn import(bytes: &[u8]) -> Result<Imported, EnvError> {
     LibraryModel::from_gltf(bytes, &options(), &mut |path| {
-        assert!(!path.contains("..") && !path.starts_with('/'), "{path:?} was asked for");
+        assert!(!path.contains("..") && !path.starts_with('/'), "{path:?} was requested");
         Err("there is no such file".to_owned())
     })
 }
@@ -91,7 +91,7 @@ fn changed(changes: &[(&str, Value)]) -> Vec<u8> {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer has a slash");
         match document.pointer_mut(parent).expect("the parent exists") {
             Value::Array(list) => {
-                let at: usize = key.parse().expect("lists have numbers");
+                let at: usize = key.parse().expect("list items are addressed by number");
                 if at < list.len() {
                     list[at] = value.clone();
                 } else {
@@ -121,7 +121,7 @@ fn glb(version: u32, json: &[u8], length_more: i64) -> Vec<u8> {
     bytes
 }
 
-/// A PNG file with only a header of this size.
+/// A PNG file that ends after its header, which gives this size.
 fn png_header(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -232,7 +232,7 @@ fn changed_values(row: &'static str) -> (&'static str, Vec<u8>) {
     let mut parts = row.split(" | ");
     let name = parts.next().expect("a row has a name");
     let change = |part: &'static str| {
-        let (pointer, value) = part.split_once(' ').expect("a place has a new value");
+        let (pointer, value) = part.split_once(' ').expect("every pointer has a new value");
         (pointer, value.parse().expect("the value is JSON"))
     };
     (name, changed(&parts.map(change).collect::<Vec<_>>()))
@@ -330,15 +330,15 @@ fn every_hostile_file_is_refused_with_its_message() {
         let said = format!("{error}\n");
         let (file, message) = (folder().join(name), folder().join(format!("{name}.txt")));
         if update {
-            fs::create_dir_all(folder()).expect("the folder can be made");
+            fs::create_dir_all(folder()).expect("the folder can be created");
             fs::write(&file, &bytes).expect("the file can be written");
             fs::write(&message, &said).expect("the message can be written");
         }
-        assert_eq!(fs::read(&file).expect(name), bytes, "{name} is as it is made here");
+        assert_eq!(fs::read(&file).expect(name), bytes, "{name} is outdated");
         assert_eq!(fs::read_to_string(&message).expect(name), said, "{name}");
         assert!(
             known.insert(name.to_owned()) && known.insert(format!("{name}.txt")),
-            "{name} twice"
+            "{name} is generated twice"
         );
     }
     let entries = fs::read_dir(folder()).expect("the corpus is committed");
@@ -360,7 +360,7 @@ fn unbroken_document_is_valid() {
     writer.write_image_data(&pixels).expect("the pixels can be written");
     writer.finish().expect("the picture can be finished");
     assert!(import(&textured(&png)).is_ok());
-    let jpeg = import(&textured(b"\xFF\xD8\xFF")).expect("the plain colour stays");
+    let jpeg = import(&textured(b"\xFF\xD8\xFF")).expect("the plain colour is used instead");
     assert!(matches!(
         jpeg.warnings[..],
         [ImportWarning::TextureFormat { image: 0, .. }]

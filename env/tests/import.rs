@@ -1,4 +1,4 @@
-//! Valid glTF files become the models that they describe: upright, with the right size and colours; and worlds can use them.
+//! Imports of valid glTF files: the models are upright, have the right size and colours, and can be used in worlds.
 #![cfg(feature = "gltf")]
 
 use std::path::Path;
@@ -126,7 +126,7 @@ fn imported_models_are_upright_and_face_north() {
     );
     assert_eq!((asset.height, asset.radius), (1.0, 1.0));
     let ColliderShape::Box { half } = asset.collider else {
-        panic!("a sheet is in a box: {:?}", asset.collider);
+        panic!("a flat model has a box collider: {:?}", asset.collider);
     };
     assert_eq!(half, [1.0, 0.01, 0.5]);
 }
@@ -244,7 +244,7 @@ fn triangles_take_their_colour_from_the_texture() {
 
 #[test]
 fn textures_wrap_as_specified_by_their_sampler() {
-    /// The colour of the first triangle, the only one with glTF's corner (2, 0, 0), then that of the second.
+    /// Expects the colours of the first triangle, which is the only one with glTF's corner (2, 0, 0), and of the second.
     #[track_caller]
     fn check(wrap: u32, expected: [[i32; 3]; 2]) {
         let quad = textured(1.0)
@@ -327,7 +327,7 @@ fn catalogue(class: &str) -> (Library, Catalogue) {
 fn libraries_override_built_in_models() {
     let (mut library, catalogue) = catalogue("Tree");
     let again = library.insert(Quad::new().import(&options("tree")).model);
-    let said = again.expect_err("capitals do not matter").to_string();
+    let said = again.expect_err("class names are not case-sensitive").to_string();
     assert!(said.contains("found one in the library already"), "{said}");
     let triangles = |class: &str, model: &str| {
         let asset = catalogue.asset(class, &Model(model.into()));
@@ -359,13 +359,13 @@ fn batches_and_spawned_objects_use_the_library() {
         ..BatchOptions::default()
     };
     let mut batch = Batch::with_catalogue(2, source, options, &catalogue).expect("the worlds start");
-    // The quad is 2 m wide and blocks the path at 5 m: the agent stops half a metre and a skin before it.
+    // The quad is 2 m wide and blocks the path at 5 m: the agent stops half a metre plus a skin in front of it.
     for _ in 0..20 {
         let ahead = Action::Continuous([10.0, 0.0, 0.0]);
         batch.step(&[ahead; 2]).expect("the episodes continue");
         alone.step(ahead).expect("the episode continues");
     }
-    let seen = batch.environment(1).expect("there are two objects");
+    let seen = batch.environment(1).expect("the batch has two environments");
     assert_eq!(seen.agent().position, alone.agent().position);
     assert!(
         (4.4..4.5).contains(&alone.agent().position[1]),

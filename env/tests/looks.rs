@@ -129,7 +129,7 @@ fn instruction_sets_render_the_same_natural_pixels() {
                 );
             }
         }
-        assert!(of_things > 100, "things are seen in world {number}: {of_things}");
+        assert!(of_things > 100, "objects are visible in world {number}: {of_things}");
     }
 }
 
@@ -350,7 +350,7 @@ fn shadows_darken_only_the_ground() {
         if of != than {
             darker += 1;
             assert!(of.iter().zip(than).all(|(of, than)| of <= than));
-            assert_eq!(a.instance[pixel], 0, "things have none");
+            assert_eq!(a.instance[pixel], 0, "only the ground is shaded");
         }
     }
     assert!(darker > 20, "{darker} pixels");

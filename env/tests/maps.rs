@@ -83,7 +83,7 @@ proptest! {
         }
     }
 
-    /// Tops of walls do not change the view from below them.
+    /// Wall tops do not change views from below.
     #[test]
     fn tops_are_not_seen_from_below(layout in layouts(), cell in any::<prop::sample::Index>(), heading in 0.0..360.0_f32) {
         let world = world(layout);

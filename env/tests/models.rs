@@ -68,7 +68,7 @@ fn animals_face_their_heading_and_have_natural_sizes() {
     assert!((2.0..2.5).contains(&deer), "up to its antlers: {deer}");
     for (name, animal) in models("animal") {
         let face = animal.parts.last().expect("a face is drawn last");
-        assert!(face.mesh.corners.iter().all(|[_, y, _]| *y > 0.05), "{name} looks back");
+        assert!(face.mesh.corners.iter().all(|[_, y, _]| *y > 0.05), "{name} faces back");
         let (left, right) = extent(&animal, 0);
         assert!((left + right).abs() < 0.02, "{name} is symmetric: {left} {right}");
         let (back, front) = extent(&animal, 1);

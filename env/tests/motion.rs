@@ -134,7 +134,7 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
             .collect()
     };
     let places = walk(&world);
-    assert_eq!(places, walk(&world), "the same world, the same walk");
+    assert_eq!(places, walk(&world), "the same world gives the same walk");
     assert!(places.iter().all(|[x, y]| x.abs() < 20.0 && y.abs() < 20.0));
     assert!(
         !places.iter().any(|[x, y]| x.abs() < 2.9 && (-14.9..-5.1).contains(y)),
@@ -159,7 +159,7 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
             .map(|_| (step(&mut environment), position(&environment, 1)).1)
             .collect()
     };
-    assert_eq!(after_the_tree(&world), seeded[..100], "with one it has the same");
+    assert_eq!(after_the_tree(&world), seeded[..100], "with a seed they stay the same");
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn destroyed_object_respawns_after_its_delay_and_pays_again() {
         .map(|number| (number, step(&mut environment).reward))
         .filter(|(_, reward)| *reward != 0.0)
         .collect();
-    assert!(paid.len() >= 4, "again and again: {paid:?}");
+    assert!(paid.len() >= 4, "it pays repeatedly: {paid:?}");
     assert!(
         paid.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 5),
         "never before half a second has passed: {paid:?}"

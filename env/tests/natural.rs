@@ -115,11 +115,11 @@ fn levels_of_detail_keep_outlines_at_their_distance() {
     for name in [
         "tree 1", "tree 2", "tree 9", "tree 10", "rock 5", "shrub 4", "animal 8", "animal 3",
     ] {
-        let (class, number) = name.split_once(' ').expect("a class and a number");
-        let number: u32 = number.parse().expect("a number");
+        let (class, number) = name.split_once(' ').expect("there are a class and a number");
+        let number: u32 = number.parse().expect("it is a number");
         let model = Model(number.to_string());
         let asset = asset_in(Style::Natural, class, &model);
-        let (_, error) = asset.levels().nth(1).expect("there is a coarse form");
+        let (_, error) = asset.levels().nth(1).expect("there is a coarse level");
         let pixels_per_metre_at_1_m = 42.0 / libm::tanf(30_f32.to_radians());
         let ball = (asset.radius * asset.radius + asset.height * asset.height / 4.0).sqrt();
         let far = 2.0 * pixels_per_metre_at_1_m * error + ball;
@@ -130,7 +130,7 @@ fn levels_of_detail_keep_outlines_at_their_distance() {
             CpuRenderer::new().render(&Scene::from_world(&world), &camera, &mut frame);
             frame.instance.iter().map(|id| *id == 1).collect::<Vec<bool>>()
         };
-        // The full level of the same view: a larger image uses it, sampled at the middle of each pixel.
+        // The same view at full detail: a larger image selects the full level; it is sampled at the centre of each pixel.
         let (coarse, large) = (outline(1.02 * far, 84), outline(1.02 * far, 84 * 9));
         let fine = |x: usize, y: usize| large[(9 * y + 4) * 84 * 9 + 9 * x + 4];
         let pixels = |is: &dyn Fn(usize, usize) -> bool, x: usize, y: usize| {

@@ -1,4 +1,4 @@
-//! Images show the right objects at the right depth, with unchanged pixels, and odd sizes do not panic.
+//! Images show the right objects at the right depth and match the golden image; odd sizes do not panic.
 
 use driftworld_env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Camera,
@@ -207,7 +207,7 @@ fn golden_image_is_unchanged() {
         write_png(&path, &frame);
     }
     let (size, golden) = read_png(&path);
-    assert_eq!(size, (84, 84), "the golden picture is as large as the drawn one");
+    assert_eq!(size, (84, 84), "the golden image has the size of the rendered one");
     let different = golden
         .chunks(3)
         .zip(frame.rgb.chunks(3))

@@ -34,9 +34,9 @@ fn pushed_object_moves_with_the_agent_and_stays_where_it_is_left() {
     let mut environment = start(vec![body([0.0, 2.0], 10.0, 0.5)]);
     go(&mut environment, AHEAD, 25);
     let [x, y] = place(&environment, 0);
-    assert!(y > 4.0 && x.abs() < 0.2, "pushed some metres ahead: {x}, {y}");
+    assert!(y > 4.0 && x.abs() < 0.2, "pushed a few metres ahead: {x}, {y}");
     let gap = y - environment.agent().position[1];
-    assert!((0.9..1.6).contains(&gap), "and is in front of the agent: {gap}");
+    assert!((0.9..1.6).contains(&gap), "it stays in front of the agent: {gap}");
     go(&mut environment, STAND, 20);
     let rest = place(&environment, 0);
     go(&mut environment, STAND, 20);

@@ -137,7 +137,7 @@ fn distant_sign_has_no_letters() {
         frame(text) != frame(" ")
     };
     assert!(differ(3.7, "ABC"), "a square of a letter is more than a pixel");
-    assert!(!differ(4.5, "ABC") && !differ(20.0, "ABC"), "it is about one, or less");
+    assert!(!differ(4.5, "ABC") && !differ(20.0, "ABC"), "at most about a pixel");
     assert!(
         differ(1.9, "ABCDEFGH") && !differ(3.0, "ABCDEFGH"),
         "squares of eight letters are smaller"

@@ -40,7 +40,7 @@ fn touch_pays_once_per_contact() {
 }
 
 #[test]
-fn reward_paid_once_is_worth_nothing_afterwards() {
+fn one_time_reward_is_not_paid_again() {
     let mut object = cube(2.2);
     object.reward_once_stimulus = vec![Stimulus::AgentCollide];
     let mut environment = environment(vec![object]);
@@ -205,7 +205,7 @@ fn invalid_action_is_refused_and_changes_nothing() {
     let before = continuous.agent();
     let nan = continuous
         .step(Action::Continuous([f64::NAN, 0.0, 0.0]))
-        .expect_err("NaN is no speed");
+        .expect_err("NaN is not a speed");
     assert_eq!(
         nan.to_string(),
         "action: found [NaN, 0.0, 0.0], expected three finite numbers; nothing was changed"
@@ -281,9 +281,9 @@ fn agent_slides_along_a_wall() {
     let [x, y] = environment.agent().position;
     assert!(
         (y - 49.49).abs() < 0.02,
-        "half a metre of body and a skin from the wall at 50 m: {y}"
+        "half a metre plus a skin from the wall at 50 m: {y}"
     );
-    assert!(x > 5.0, "and on along it: {x}");
+    assert!(x > 5.0, "and slides along it: {x}");
 }
 
 #[test]
@@ -388,7 +388,7 @@ fn arena() -> WorldDraft {
 }
 
 #[test]
-fn resetting_is_starting_anew() {
+fn reset_equals_a_new_environment() {
     let mut used = start(WorldDraft::default());
     rewards(&mut used, &[AHEAD; 5]);
     used.reset(arena().check().expect("the world is valid"));

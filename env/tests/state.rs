@@ -193,7 +193,7 @@ proptest! {
 
         let read = World::from_json("state", &text).map_err(|error| TestCaseError::fail(error.to_string()))?;
         let mut resumed = start(read);
-        prop_assert_eq!(resumed.state().to_json(), text, "the state of a state is that state");
+        prop_assert_eq!(resumed.state().to_json(), text, "saving the resumed world gives the same document");
         prop_assert_eq!(&resumed.observe().rgb, &picture);
         let resumed = run(&mut resumed, &actions[before..]);
         prop_assert_eq!(difference(&resumed, &uninterrupted), None, "from the state");
@@ -284,7 +284,7 @@ fn state_without_a_seed_uses_its_worlds_seed() {
             .expect("the episode continues");
         environment.scene().items[0].heading_deg
     };
-    assert_eq!(heading("a", None), heading("b", None), "its places are the same");
+    assert_eq!(heading("a", None), heading("b", None), "both use the world's seed");
     assert_ne!(heading("a", None), heading("a", Some(0)));
     assert_ne!(heading("a", Some(1)), heading("a", Some(0)));
 }

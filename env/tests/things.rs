@@ -62,7 +62,7 @@ fn closed_door_stops_the_agent_and_opens_by_interaction() {
         "an open door does not react"
     );
     steps(&mut environment, AHEAD, 20);
-    assert!(north(&environment) > 6.0, "nobody stops it: {}", north(&environment));
+    assert!(north(&environment) > 6.0, "nothing stops it: {}", north(&environment));
 }
 
 #[test]
@@ -251,7 +251,7 @@ fn delivery_requires_all_objects_with_the_tag() {
     let mut environment = start(world);
     steps(&mut environment, USE, 1);
     steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
-    assert!(!environment.ended(), "what is carried is not there yet");
+    assert!(!environment.ended(), "the carried object has not been delivered");
     assert!(environment.step(USE).expect("the episode continues").success);
 }
 

@@ -141,7 +141,7 @@ proptest! {
             let step = environment.step(action).expect("the episode has no end");
             for (index, own) in environment.objects().iter().enumerate() {
                 if world.objects[index].portable.is_some() {
-                    prop_assert!(own.present != own.carried, "{index} is lost, or twice");
+                    prop_assert!(own.present != own.carried, "object {index} is lost or duplicated");
                 }
                 if own.carried {
                     prop_assert_eq!(own.position, environment.agent().position);

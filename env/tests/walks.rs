@@ -210,6 +210,6 @@ fn thousand_walks_end_where_a_frictionless_disc_does() {
         }
     }
     println!("{} of {WALKS} walks are off, {slid} met something: {far:?}", far.len());
-    assert!(slid > WALKS / 2, "walks meet things: {slid}");
+    assert!(slid > WALKS / 2, "most walks hit obstacles: {slid}");
     assert!(far.len() <= WALKS / 100, "{} of {WALKS} are off: {far:?}", far.len());
 }

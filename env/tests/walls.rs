@@ -243,7 +243,7 @@ fn sliding_body_keeps_the_parallel_velocity_at_a_wall() {
                 120.0 * meant
             );
             // A cube swings away again when its second corner hits.
-            assert!(nearest > 4.0, "{class} {heading}°: it came to the wall: {nearest}");
+            assert!(nearest > 4.0, "{class} {heading}°: it reached the wall: {nearest}");
         }
     }
 }

@@ -63,7 +63,7 @@ proptest! {
 
     /// Standing in zones pays per second, independently of the time step, and once for entering, in the first step.
     #[test]
-    fn standing_in_zones_pays_by_the_second(
+    fn standing_in_zones_pays_per_second(
         zones in prop::collection::vec(zone(), 0..5),
         at in prop::array::uniform2(-6.0..6.0f64),
         time_step in prop::sample::select(vec![0.02, 0.05, 0.1, 0.25]),
@@ -192,7 +192,7 @@ fn zones_that_teleport_to_each_other_work_both_ways() {
     );
     // Enters the first zone within the first time steps; during the remaining ones it continues from the middle of the second zone.
     let into = step(&mut environment, Action::Continuous([0.9, 0.0, 0.0]));
-    assert_eq!(into.reward, 11.0, "arriving is entering");
+    assert_eq!(into.reward, 11.0, "arriving counts as entering");
     assert!((-19.5..-19.0).contains(&environment.agent().position[1]));
     // Leaving the second zone and entering it again teleports to the first.
     assert_eq!(step(&mut environment, Action::Continuous([5.0, 0.0, 0.0])).reward, 0.0);

@@ -79,7 +79,7 @@ fn check_reading_with_texts(dir: &Path, log: &Log) {
     );
 }
 
-/// A row as text that is equal for equal rows: all NaNs are equal, and columns have no order.
+/// A row as text that is equal for equal rows: all NaNs are equal, and the order of columns does not matter.
 fn shown(row: Row<'_>) -> String {
     let mut record = row.to_record();
     record.metrics.sort_keys();

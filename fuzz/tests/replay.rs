@@ -1,4 +1,4 @@
-//! Checks the laws on the fuzzer's seeds and on small changes to them. The fuzzer itself needs a nightly compiler.
+//! Runs every target's check on the fuzzer's seeds and on small changes to them. The fuzzer itself needs a nightly compiler.
 
 use std::fs;
 use std::path::Path;
@@ -46,7 +46,7 @@ fn change() -> impl Strategy<Value = Change> {
 
 fn apply_changes(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     for change in changes {
-        // The end is a position as well, so there is one more than there are bytes.
+        // The end is a position as well, so there is one more position than there are bytes.
         let at = |index: &prop::sample::Index| index.index(text.len() + 1);
         match change {
             Change::Flip(index, byte) => {
@@ -74,7 +74,7 @@ fn apply_changes(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     text
 }
 
-/// Checks one target's law on its seeds and on small changes to them.
+/// Runs one target's check on its seeds and on small changes to them.
 fn check(name: &str, cases: u32) {
     let target = TARGETS
         .iter()

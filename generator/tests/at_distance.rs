@@ -7,7 +7,7 @@ use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_spec::{TaskSpec, Variant};
 use proptest::prelude::*;
 
-/// Tolerance of a found distance.
+/// Tolerance for distances found by the search.
 const TOLERANCE: f64 = 1e-3;
 
 /// A task of numbers in 0..1 with requirements on them, and a variant with the default values.
@@ -170,7 +170,7 @@ fn forbidden_variant_is_never_found() {
     };
     let subject = Subject::Element(driftworld_spec::Element::O);
     let found = at_distance(&from, &subject, 0.5, 0.01, changed).unwrap().variant;
-    // Green and green, and crimson and red, are too similar; the remaining answer makes the bad ones blue.
+    // Green and green, and crimson and red, are too similar; so the search can only make the bad ones blue.
     assert_eq!(found.value("bad").unwrap().to_string(), "blue");
     assert_eq!(found.value("good").unwrap().to_string(), "green");
 }

@@ -132,16 +132,16 @@ proptest! {
         }
     }
 
-    /// With a look-up over a randomized parameter, each world equals the one with the case of its cue written out.
+    /// With a look-up over a randomized parameter, each world equals one in which the case for its cue is written out.
     #[test]
     fn look_up_over_drawn_parameter_equals_its_case_in_each_world(fillings in fillings(), seed in 0..9u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
         let by_variant = task(&filled(&variant_cue(), &looked_up(&fillings, "cue")));
-        let sampler = Sampler::new(&drawn.variant("default").expect("it is always there"), seed);
+        let sampler = Sampler::new(&drawn.variant("default").expect("it always exists"), seed);
         let all = worlds(&drawn, "default", seed);
         let [red, blue] = ["red", "blue"].map(|name| worlds(&by_variant, name, seed));
         for (index, world) in all.iter().enumerate() {
-            let values = sampler.values(index as u64).expect("it is drawn");
+            let values = sampler.values(index as u64).expect("the values can be sampled");
             let cue = values.iter().find(|(name, _)| *name == "cue").map(|(_, value)| value.to_string());
             let expected = if cue.as_deref() == Some("red") { &red[index] } else { &blue[index] };
             prop_assert_eq!(world, expected);
@@ -152,11 +152,11 @@ proptest! {
     #[test]
     fn worlds_with_look_ups_can_be_drawn_in_any_order(fillings in fillings(), seed in 0..9u64, index in 0..12u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
-        let variant = drawn.variant("default").expect("it is always there");
+        let variant = drawn.variant("default").expect("it always exists");
         let alone = world(&Sampler::new(&variant, seed), index);
         prop_assert_eq!(&alone, &worlds(&drawn, "default", seed)[index as usize]);
         // The task round-trips through its own JSON.
-        let reread = TaskSpec::from_json("again.json", &drawn.to_json()).expect("it was written by us");
+        let reread = TaskSpec::from_json("again.json", &drawn.to_json()).expect("our own output is valid");
         prop_assert_eq!(worlds(&reread, "default", seed), worlds(&drawn, "default", seed));
     }
 
@@ -198,7 +198,7 @@ proptest! {
                 { "case": { "param": "cue" }, "of": { "red": chance }, "else": 0.5 } } } },
             "cue": { "role": "randomized", "type": "string", "affects": ["S"],
                      "distribution": { "choice": { "values": ["red", "blue"], "weights": [weight, 3] } } } } }));
-        let variant = task.variant("default").expect("it is always there");
+        let variant = task.variant("default").expect("it always exists");
         let Some(Distribution::Choice { values, weights: Some(weights) }) = variant.distribution("pay") else {
             panic!("it is drawn from a list")
         };

@@ -27,7 +27,7 @@ const MAZE: &str = r#"{ "maze": { "cells": [6, 5], "cell": 2 } }"#;
 const ROOMS: &str = r#"{ "rooms": { "grid": [2, 2], "room": [6, 6] } }"#;
 
 fn worlds(task: &Arc<TaskSpec>, count: u64) -> Vec<World> {
-    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 5);
+    let sampler = Sampler::new(&task.variant("default").expect("it always exists"), 5);
     let world = |index| sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
     (0..count).map(world).collect()
 }
@@ -41,7 +41,7 @@ fn cells(world: &World) -> (&Plan, usize, Vec<usize>) {
 }
 
 fn error_for(task: &Arc<TaskSpec>) -> String {
-    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 5);
+    let sampler = Sampler::new(&task.variant("default").expect("it always exists"), 5);
     sampler
         .world(0)
         .map_or_else(|error| error.to_string(), |_| String::new())
@@ -67,7 +67,7 @@ fn dead_ends_corridors_and_junctions_are_classified() {
             assert_ne!(coins[0], coins[1], "each has a cell of its own");
             seen.extend(coins);
         }
-        assert!(seen.len() >= 8, "{kind}: places vary");
+        assert!(seen.len() >= 8, "{kind}: positions vary");
     }
 }
 
@@ -156,7 +156,7 @@ fn unsatisfiable_request_reports_number_of_cells() {
 }
 
 #[test]
-fn placements_in_cells_are_rejected_where_they_have_no_meaning() {
+fn meaningless_placements_in_cells_are_rejected() {
     let error_for = |world: &str, group: &str| {
         let text = format!(
             r#"{{ "name": "t", "world": {world}, "groups": [

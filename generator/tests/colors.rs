@@ -25,7 +25,7 @@ fn color_parameter(distribution: &str) -> String {
 }
 
 fn default(task: &Arc<TaskSpec>) -> Variant {
-    task.variant("default").expect("default exists")
+    task.variant("default").expect("it always exists")
 }
 
 fn law(variant: &Variant) -> Distribution {
@@ -36,7 +36,7 @@ fn colors(sampler: &Sampler, count: u64) -> Vec<[f64; 3]> {
     let value = |index| sampler.values(index).expect("no requirements").pop();
     let color = |index| match value(index) {
         Some((_, Value::Color(color))) => color.0,
-        other => panic!("{other:?} is no colour"),
+        other => panic!("{other:?} is not a colour"),
     };
     (0..count).map(color).collect()
 }
@@ -177,14 +177,14 @@ fn variants_share_random_numbers_channel_by_channel() {
     );
     let of = |name: &str| task.variant(name).expect("the task declares it");
     let Distribution::ColorNormal { mean, std } = law(&of("other")) else {
-        panic!("the family stays")
+        panic!("both variants use the same family")
     };
     assert_eq!((mean, std), (Channels([0.25, 0.5, 0.75]), ChannelSpread::Same(0.3)));
     let units_of = |name: &str| {
         let variant = of(name);
         let channels = law(&variant).color_channels().expect("separate channels");
         let drawn = colors(&Sampler::new(&variant, 1), 50);
-        let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
+        let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("it is a number"));
         drawn.into_iter().map(units).collect::<Vec<_>>()
     };
     for (a, b) in units_of("default").into_iter().zip(units_of("other")) {
@@ -261,8 +261,8 @@ fn drift_interpolates_colours_in_oklab_and_hues_the_shorter_way() {
     let Distribution::ColorPerturb { value, high, .. } = at("noisy", "cut", 0.5) else {
         panic!("distributions of one family are interpolated")
     };
-    let gray = Color::from_name("gray").expect("a CSS name").0;
-    let silver = Color::from_name("silver").expect("a CSS name").0;
+    let gray = Color::from_name("gray").expect("it is a CSS name").0;
+    let silver = Color::from_name("silver").expect("it is a CSS name").0;
     assert_eq!(
         (value, high),
         (Channels(gray), Some(Channels(silver.map(|c| f64::midpoint(1.0, c)))))
@@ -305,8 +305,8 @@ fn each_object_of_a_group_has_its_own_colour() {
     for (name, middle) in [("default", "green"), ("autumn", "darkgoldenrod")] {
         let world = Sampler::new(&task.variant(name).expect("the task declares it"), 1)
             .world(0)
-            .expect("room for all");
-        let middle = Color::from_name(middle).expect("a CSS name").0;
+            .expect("there is room for all trees");
+        let middle = Color::from_name(middle).expect("it is a CSS name").0;
         let shades: Vec<f64> = world
             .objects
             .iter()

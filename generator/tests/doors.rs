@@ -142,7 +142,7 @@ proptest! {
         };
         let [without, keyed] = ["none", "keyed"].map(with);
         prop_assert!(doors(&without).is_empty() && keys(&without).is_empty());
-        // A start inside a door is drawn again.
+        // A start inside a door is resampled.
         prop_assume!(without.agent_params.coordinates == keyed.agent_params.coordinates);
         prop_assert_eq!(&without.objects[..], &keyed.objects[..3]);
         prop_assert_eq!((without.plan(), without.seed), (keyed.plan(), keyed.seed));

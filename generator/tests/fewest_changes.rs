@@ -1,6 +1,6 @@
 //! Tests of the search for variants at a given distance, with parameters of every type: it finds every distance that an
-//! exhaustive search finds, with no more changes, and changes no parameter needlessly. Numbers alone, cut off by requirements,
-//! are tested in `at_distance.rs`.
+//! exhaustive search finds, with no more changes, and changes no parameter needlessly. `at_distance.rs` tests tasks that have
+//! only numbers and requirements.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use driftworld_spec::{Domain, Element, ParameterType, TaskSpec, Value, Variant};
 
 use crate::drawn_task::{Drawn, Numbers};
 
-/// Tolerance of a found distance.
+/// Tolerance for distances found by the search.
 const TOLERANCE: f64 = 1e-3;
 
 /// Number of distances to request per task.
@@ -68,7 +68,7 @@ fn difference(from: &Variant, to: &Variant, name: &str) -> f64 {
     }
 }
 
-/// The Wasserstein-1 distance between the uniform distributions from `lo` to `hi`, which are compared as distributions.
+/// The Wasserstein-1 distance between the two variants' uniform distributions from `lo` to `hi`.
 fn distribution_distance(from: &Variant, to: &Variant) -> f64 {
     let number = |variant: &Variant, name| variant.value(name).and_then(Value::as_number);
     let ends = |name| Some(number(from, name)? - number(to, name)?);
@@ -272,7 +272,7 @@ fn single_sufficient_parameter_is_changed_alone() {
         changed(&from, &found.expect("it is allowed").variant, &names)
     };
     assert_eq!(find(0.1), ["a"]);
-    assert_eq!(find(0.5), ["b"], "a cannot go as far");
+    assert_eq!(find(0.5), ["b"], "a alone cannot reach this distance");
     assert_eq!(find(1.0), ["word"]);
     assert_eq!(find(1.2), ["a", "word"]);
 }
@@ -291,13 +291,13 @@ fn vector_moves_to_its_farthest_corner() {
     };
     assert!(find(0.89).is_ok());
     let Err(GeneratorError::TooFar { farthest, .. }) = find(0.95) else {
-        panic!("both numbers can go 18 of 20 and no farther")
+        panic!("both numbers can change by 18 of 20 and no more")
     };
     assert!((farthest - 0.9).abs() < 1e-9, "{farthest}");
 }
 
 #[test]
-fn number_moves_so_that_another_parameter_is_read() {
+fn number_moves_to_activate_another_parameter() {
     let text = r#"{ "name": "t", "variants": { "here": { "hi": 0.4, "m": 1, "word": "x" } }, "parameters": {
         "lo": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.1 },
         "hi": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.4 },
@@ -311,6 +311,6 @@ fn number_moves_so_that_another_parameter_is_read() {
     let task = TaskSpec::from_json("t", text).expect("the task is valid");
     let from = task.variant("here").expect("the task declares it");
     let names = ["lo", "hi", "m", "arc", "word", "law"].map(str::to_owned);
-    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, where m is read and adds five of eleven steps; the rest for the arc.
+    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, which activates m; m adds five of eleven steps, and the arc the rest.
     assert_eq!(fault(&from, &names, 2.482_323_232, 5), None);
 }

@@ -147,7 +147,7 @@ fn worlds_that_break_a_requirement_are_redrawn_and_the_others_unchanged() {
         if number(&first_draw, 0) + 0.5 < number(&first_draw, 1) {
             assert_eq!(
                 values, first_draw,
-                "{index}: a first draw that meets the requirement stays"
+                "{index}: a first draw that meets the requirement is kept"
             );
             unchanged += 1;
         }
@@ -189,7 +189,7 @@ fn histogram(
 #[test]
 fn sequences_spread_numbers_and_points_evenly_with_random_access() {
     let task = load(SPREAD);
-    let light = |values: &[(&str, Value)]| (values[0].1.as_number().expect("a number") * 16.0) as usize;
+    let light = |values: &[(&str, Value)]| (values[0].1.as_number().expect("it is a number") * 16.0) as usize;
     let cell = |values: &[(&str, Value)]| match values[2].1 {
         Value::Point([x, y]) => (x as usize / 4) * 4 + y as usize / 4,
         _ => usize::MAX,

@@ -16,7 +16,7 @@ fn sampler(kind: &str, distribution: &str, seed: u64) -> (Sampler, Distribution)
             "x": {{ "role": "randomized", "type": "{kind}", "affects": ["S"], "distribution": {distribution} }} }} }}"#
     );
     let task = TaskSpec::from_json("draws.json", &text).unwrap_or_else(|error| panic!("{error}"));
-    let variant = task.variant("default").expect("default exists");
+    let variant = task.variant("default").expect("it always exists");
     let declared = variant.distribution("x").expect("x is randomized");
     (Sampler::new(&variant, seed), declared)
 }
@@ -29,7 +29,7 @@ fn numbers(kind: &str, distribution: &str) -> (Vec<f64>, Distribution) {
     let (sampler, declared) = sampler(kind, distribution, 11);
     let drawn = values(&sampler).map(|value| match value {
         Value::Boolean(flag) => f64::from(u8::from(flag)),
-        other => other.as_number().expect("it has numbers"),
+        other => other.as_number().expect("it is numeric"),
     });
     (drawn.collect(), declared)
 }
@@ -76,13 +76,13 @@ fn check_moments(name: &str, drawn: &[f64], mean: f64, variance: f64) {
 #[track_caller]
 fn check_continuous(distribution: &str) {
     let (drawn, declared) = numbers("number", distribution);
-    let statistic = kolmogorov(&drawn, |x| declared.cdf(x).expect("it has numbers"));
+    let statistic = kolmogorov(&drawn, |x| declared.cdf(x).expect("it is numeric"));
     assert!(statistic < KOLMOGOROV, "{distribution}: {statistic}");
     check_moments(
         distribution,
         &drawn,
-        declared.mean().expect("it has numbers"),
-        declared.variance().expect("it has numbers"),
+        declared.mean().expect("it is numeric"),
+        declared.variance().expect("it is numeric"),
     );
 }
 
@@ -95,7 +95,7 @@ fn check_discrete(kind: &str, distribution: &str) {
         assert_eq!(number.fract(), 0.0, "{distribution}");
         *counts.entry(*number as i64).or_default() += 1.0;
     }
-    let cdf = |x: i64| declared.cdf(x as f64).expect("it has numbers");
+    let cdf = |x: i64| declared.cdf(x as f64).expect("it is numeric");
     let (low, high) = (
         *counts.keys().next().expect("there are draws"),
         *counts.keys().last().expect("there are draws"),
@@ -117,8 +117,8 @@ fn check_discrete(kind: &str, distribution: &str) {
     check_moments(
         distribution,
         &drawn,
-        declared.mean().expect("it has numbers"),
-        declared.variance().expect("it has numbers"),
+        declared.mean().expect("it is numeric"),
+        declared.variance().expect("it is numeric"),
     );
 }
 
@@ -162,9 +162,9 @@ fn integer_draws_follow_their_distribution() {
 fn slightly_wrong_distribution_is_detected() {
     let (drawn, _) = numbers("number", r#"{ "normal": { "mean": 2, "std": 3 } }"#);
     let shifted = Distribution::Normal { mean: 2.15, std: 3.0 };
-    assert!(kolmogorov(&drawn, |x| shifted.cdf(x).expect("it has numbers")) > KOLMOGOROV);
+    assert!(kolmogorov(&drawn, |x| shifted.cdf(x).expect("it is numeric")) > KOLMOGOROV);
     let wider = Distribution::Normal { mean: 2.0, std: 3.2 };
-    assert!(kolmogorov(&drawn, |x| wider.cdf(x).expect("it has numbers")) > KOLMOGOROV);
+    assert!(kolmogorov(&drawn, |x| wider.cdf(x).expect("it is numeric")) > KOLMOGOROV);
 }
 
 #[test]
@@ -212,7 +212,7 @@ fn dirichlet_shares_sum_to_1_and_follow_beta_distributions() {
             low: None,
             high: None,
         };
-        let statistic = kolmogorov(drawn, |x| declared.cdf(x).expect("it has numbers"));
+        let statistic = kolmogorov(drawn, |x| declared.cdf(x).expect("it is numeric"));
         assert!(statistic < KOLMOGOROV, "share with alpha {alpha}: {statistic}");
     }
 }
@@ -269,7 +269,7 @@ fn neighbouring_worlds_and_seeds_are_uncorrelated() {
     let draws = |seed| {
         let (sampler, _) = sampler("number", r#"{ "uniform": { "low": -1, "high": 1 } }"#, seed);
         values(&sampler)
-            .map(|value| value.as_number().expect("it has numbers"))
+            .map(|value| value.as_number().expect("it is numeric"))
             .collect::<Vec<f64>>()
     };
     let (a, b) = (draws(1), draws(2));
@@ -287,14 +287,14 @@ fn neighbouring_worlds_and_seeds_are_uncorrelated() {
         "x": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": -1, "high": 1 } } },
         "y": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": -1, "high": 1 } } } } }"#;
     let task: Arc<TaskSpec> = TaskSpec::from_json("two.json", two).unwrap_or_else(|error| panic!("{error}"));
-    let sampler = Sampler::new(&task.variant("default").expect("default exists"), 1);
+    let sampler = Sampler::new(&task.variant("default").expect("it always exists"), 1);
     let column = |position: usize| -> Vec<f64> {
         (0..DRAWS)
             .map(|index| {
                 sampler.values(index).expect("no requirements")[position]
                     .1
                     .as_number()
-                    .expect("it has numbers")
+                    .expect("it is numeric")
             })
             .collect()
     };

@@ -13,7 +13,7 @@ fn sampler(placement: &str, count: u32, more: &str) -> (Sampler, Distribution) {
                           "keep_out": {{ "walls": 0, "agent": 0 }} {more} }}] }}"#
     );
     let task = TaskSpec::from_json("places.json", &text).unwrap_or_else(|error| panic!("{error}"));
-    let variant = task.variant("default").expect("default exists");
+    let variant = task.variant("default").expect("it always exists");
     let declared = variant.settle(match &task.groups()[0].spec.placement {
         driftworld_spec::Source::Distribution(distribution) => distribution,
         _ => panic!("these placements are written out, not parameters"),
@@ -190,7 +190,7 @@ fn counts_around_objects_follow_their_distribution_and_placements_rotate() {
           "object": { "class": "fence" }, "placement": { "points": { "values": [[0, 5], [0, 6], [0, 7]] } },
           "keep_out": { "walls": 0, "agent": 0 } } ] }"#;
     let task = TaskSpec::from_json("around.json", text).unwrap_or_else(|error| panic!("{error}"));
-    let sampler = Sampler::new(&task.variant("default").expect("default exists"), 3);
+    let sampler = Sampler::new(&task.variant("default").expect("it always exists"), 3);
     let (mut num_houses, mut histogram) = (0, [0_u32; 4]);
     for index in 0..100 {
         let world = world(&sampler, index);

@@ -92,7 +92,7 @@ fn values_without_interpolation_switch_at_a_point_or_at_random() {
     assert_eq!(between("a", "b", 0.25).value("model"), Some(&Value::Text("3".into())));
     assert_eq!(between("a", "b", 0.49).value("solid"), Some(&Value::Boolean(true)));
     let mixed = Drift::new(variant("a"), variant("b"))
-        .expect("one task")
+        .expect("both belong to the same task")
         .with_switch(Switch::Mixture { seed: 3 });
     let num_switched = |progress| {
         let is_switched = |index: &u64| {
@@ -125,7 +125,7 @@ fn drift_starts_and_ends_with_the_given_variants() {
         DriftSchedule::Sawtooth(2),
     ] {
         let drift = Drift::new(variant("a"), variant("b"))
-            .expect("one task")
+            .expect("both belong to the same task")
             .with_schedule(schedule);
         assert_eq!(
             drift.at(0.0, 0).expect("the start is valid").values(),
@@ -137,7 +137,7 @@ fn drift_starts_and_ends_with_the_given_variants() {
         );
     }
     let other = TaskSpec::from_json("u.json", r#"{ "name": "u" }"#).expect("a task needs only a name");
-    let other = other.variant("default").expect("default exists");
+    let other = other.variant("default").expect("it always exists");
     assert!(matches!(
         Drift::new(variant("a"), other),
         Err(GeneratorError::DifferentTasks { .. })

@@ -175,14 +175,14 @@ fn what_cannot_be_placed_says_which_group_and_what_to_loosen() {
              "groups": [{ "name": "crowd", "count": 100, "object": { "class": "cube" },
                           "placement": { "box": { "low": [-5, -5], "high": [5, 5] } }, "separation": 3 }] }"#,
     );
-    let error = sample(&crowd.variant("default").expect("default exists"), 0, 0).expect_err("100 cubes do not fit");
+    let error = sample(&crowd.variant("default").expect("it always exists"), 0, 0).expect_err("100 cubes do not fit");
     assert_eq!(error.code(), "generator/no-place");
     insta::assert_snapshot!(error);
     let beyond = load(
         r#"{ "name": "beyond", "groups": [{ "name": "g", "count": 1, "object": { "class": "cube" },
                           "placement": { "points": { "values": [[80, 0]] } } }] }"#,
     );
-    let error = sample(&beyond.variant("default").expect("default exists"), 0, 0).expect_err("80 m is outside");
+    let error = sample(&beyond.variant("default").expect("it always exists"), 0, 0).expect_err("80 m is outside");
     insta::assert_snapshot!(error);
 }
 
@@ -191,7 +191,7 @@ fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
     let wild = load(
         r#"{ "name": "wild", "world": { "environment_params": { "light_intensity": { "normal": { "mean": 1, "std": 50 } } } } }"#,
     );
-    let variant = wild.variant("default").expect("default exists");
+    let variant = wild.variant("default").expect("it always exists");
     let error = (0..100)
         .find_map(|index| sample(&variant, 0, index).err())
         .expect("half of the draws are negative");
@@ -206,7 +206,7 @@ fn draws_that_do_not_go_together_are_an_error_that_says_why() {
              "observation_size": { "integer_uniform": { "low": 84, "high": 4096 } },
              "supersampling": { "integer_uniform": { "low": 1, "high": 4 } } } } }"#,
     );
-    let variant = pictures.variant("default").expect("default exists");
+    let variant = pictures.variant("default").expect("it always exists");
     let worlds: Vec<_> = (0..100).map(|index| sample(&variant, 0, index)).collect();
     let large = worlds
         .iter()

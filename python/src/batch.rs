@@ -358,7 +358,7 @@ impl PyBatch {
     fn lock(&self) -> PyResult<MutexGuard<'_, Stepping>> {
         match self.stepping.try_lock() {
             Ok(stepping) => Ok(stepping),
-            // A panic leaves no environment in the middle of a step, because each has its own state.
+            // A panic in one environment does not affect the others, because each has its own state.
             Err(TryLockError::Poisoned(poisoned)) => Ok(PoisonError::into_inner(poisoned)),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
                 "environment: found it in use by another thread, expected one thread at a time; make an environment for each \

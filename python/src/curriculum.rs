@@ -185,7 +185,7 @@ impl PyPlan {
     }
 }
 
-/// A plan's error; if a task's document is the cause, with its problems.
+/// Converts a plan's error; if a task's document caused it, includes the document's problems.
 fn because(scenario: &Path, error: CurriculumError) -> Error {
     if let CurriculumError::Unknown { task, .. } = &error
         && let Err(TaskError::Spec(source)) = task_from(scenario, task)

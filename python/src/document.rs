@@ -114,7 +114,7 @@ pub(crate) fn check<'py>(
     Ok((kind.word(), problems, checked.warnings, error))
 }
 
-/// A problem of a whole document, as a dictionary.
+/// A problem that concerns the whole document, as a dictionary.
 fn alone<'py>(py: Python<'py>, raised: &PyErr) -> PyResult<Bound<'py, PyDict>> {
     let value = raised.value(py);
     let problem = PyDict::new(py);

@@ -18,7 +18,7 @@ use crate::rounding::{detach, usually_rounded};
 /// How often to check for signals.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// From this many environments on, Ctrl-C can stop making and resetting them; fewer are done almost at once.
+/// Minimum number of environments for which Ctrl-C can interrupt creation and resets; fewer finish almost at once.
 const MANY_ENVS: usize = 32;
 
 /// This process's worker pool, one thread per processor. Rayon's global pool does not survive a fork: its threads stay in the

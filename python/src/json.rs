@@ -1,4 +1,4 @@
-//! JSON values as Python's own.
+//! Converts JSON values to Python values.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};

@@ -23,7 +23,7 @@ use crate::errors::{Error, Result};
 /// Keyword arguments; `None` means not given.
 pub(crate) struct Options<'py> {
     given: Bound<'py, PyDict>,
-    /// The exception for invalid ones.
+    /// The exception class for invalid arguments.
     class: &'static str,
 }
 
@@ -39,7 +39,7 @@ impl<'py> Options<'py> {
             let value = self.given.get_item(name)?.filter(|value| !value.is_none());
             given.extend(value.map(|value| (name, value)));
         }
-        // The one being read, for the error.
+        // The keyword being read, for the error message.
         let read = Cell::new(None);
         let reading = given.iter().map(|(name, value)| {
             read.set(Some((*name, value)));
@@ -77,14 +77,14 @@ pub(crate) fn requests() -> BTreeMap<&'static str, Vec<(&'static str, Option<Str
     ])
 }
 
-/// A value as Python writes it.
+/// A value's Python representation (`repr`).
 fn shown(value: &Bound<'_, PyAny>) -> String {
     value
         .repr()
         .map_or_else(|error| error.to_string(), |text| text.to_string())
 }
 
-/// What follows in a message after the value that was found.
+/// The part of an error message that follows the found value.
 #[derive(Debug)]
 struct Wrong(String);
 
@@ -118,7 +118,7 @@ impl serde::de::Error for Wrong {
     }
 }
 
-/// A keyword's value, which a request reads by its own types.
+/// A keyword's value, deserialised by the types of the request's fields.
 struct Given<'py>(Bound<'py, PyAny>);
 
 impl<'py> Given<'py> {
@@ -156,7 +156,7 @@ macro_rules! whole {
     };
 }
 
-/// Methods that read what can be written as JSON.
+/// Methods for values that JSON can represent.
 impl<'de> Deserializer<'de> for Given<'_> {
     type Error = Wrong;
 

@@ -128,7 +128,7 @@ fn lay<T: Copy>(place: &mut T, value: Option<T>) {
     }
 }
 
-/// The data from which an environment's spaces are made.
+/// The data from which an environment's spaces are built.
 fn layout(world: &World, reach: &Reach) -> Json {
     let agent = &world.agent_params;
     let [width, height] = agent.picture_size();

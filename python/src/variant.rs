@@ -112,7 +112,7 @@ impl PyVariant {
         let found = run_detached(py, move || {
             let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
             let measure = |other: &Variant| {
-                // Unbounded distributions have no finite distance: they are farther away than any that is requested.
+                // Unbounded distributions have no finite distance, so they count as farther than any requested distance.
                 let distance = measured.between(&from, other);
                 distance.map_or(f64::INFINITY, |distance| distance.within(element))
             };

@@ -130,7 +130,7 @@ fn headings_never_skip_a_level() {
 }
 
 #[test]
-fn page_loads_nothing_and_runs_nothing() {
+fn page_loads_no_resources_and_runs_no_scripts() {
     let page = Life::default().live().page();
     let without_namespace = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for part in [
@@ -277,8 +277,8 @@ fn ink(figures: &Figures, figure: Figure, color: [u8; 3]) -> usize {
     let info = reader.next_frame(&mut rgb).unwrap();
     assert_eq!((info.width, info.color_type), (1920, png::ColorType::Rgb));
     let white = rgb.chunks(3).filter(|pixel| *pixel == [255; 3]).count();
-    assert!(white > rgb.len() / 3 / 2, "{figure:?}: the ground is white");
-    // The title and one line of names are 61 pixels high, at two dots each.
+    assert!(white > rgb.len() / 3 / 2, "{figure:?}: the background is white");
+    // The title and one line of names are 61 pixels high, at two dots per pixel.
     let plot = &rgb[130 * 1920 * 3..];
     plot.chunks(3).filter(|pixel| *pixel == color).count()
 }
@@ -352,7 +352,7 @@ fn learning_blocks_of_one_experience_are_dots() {
 }
 
 #[test]
-fn short_evaluations_of_a_long_lifetime_have_an_area_among_the_raw_values() {
+fn short_evaluations_of_a_long_lifetime_have_a_visible_area_in_the_raw_figure() {
     let life = Life {
         length: 9,
         rounds: 100,

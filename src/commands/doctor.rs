@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_report_names_each_adapter_and_what_auto_takes() {
+    fn report_names_each_adapter_and_the_choice_of_auto() {
         check(
             &report(false, None),
             &[
@@ -213,14 +213,14 @@ mod tests {
 
     #[test]
     fn machine_without_vulkan_gets_hints_on_what_to_install() {
-        let empty = tempfile::tempdir().expect("a folder");
+        let empty = tempfile::tempdir().expect("a temporary folder can be created");
         let hints = vulkan_hints(&[empty.path()], &[empty.path()]);
         assert!(
             hints[0].contains("libvulkan1") && hints[1].contains("mesa-vulkan-drivers"),
             "{hints:?}"
         );
         for file in ["libvulkan.so.1", "card.json"] {
-            std::fs::write(empty.path().join(file), "").expect("a file");
+            std::fs::write(empty.path().join(file), "").expect("the folder is writable");
         }
         assert!(vulkan_hints(&[empty.path()], &[empty.path()]).is_empty());
     }

@@ -1,5 +1,5 @@
-//! Output of commands: to standard output, or to files that are written whole or not at all. Escapes control characters and
-//! other text that a terminal would interpret or hide.
+//! Output of commands, to standard output or to files, which are written atomically. Escapes control characters and other text
+//! that a terminal would interpret or hide.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};

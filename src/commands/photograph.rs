@@ -274,8 +274,8 @@ mod tests {
             objects: vec![Object::new("cube", [0.0, 0.0]); 2],
             ..WorldDraft::default()
         };
-        let views = Studio::new(&world.clone().check().expect("the world is sound"))
-            .expect("few photographs")
+        let views = Studio::new(&world.clone().check().expect("the world is valid"))
+            .expect("there are few photographs")
             .photographs();
         let names: std::collections::BTreeSet<String> = views
             .iter()

@@ -149,7 +149,7 @@ mod tests {
         ]);
         world.environment_params.map_size = [10.0, 10.0];
         world.agent_params.heading = 90.0;
-        let environment = Environment::new(world.check().expect("the world is sound"));
+        let environment = Environment::new(world.check().expect("the world is valid"));
         let expected = [
             "####################",
             "#                  #",
@@ -193,7 +193,7 @@ mod tests {
         });
         world.environment_params.zones = vec![lava, mud];
         world.agent_params.coordinates = [4.5, -4.5];
-        let environment = Environment::new(world.check().expect("the world is sound"));
+        let environment = Environment::new(world.check().expect("the world is valid"));
         let expected = [
             "############################",
             "############################",

@@ -82,7 +82,7 @@ mod tests {
         ] {
             assert!(folder.write(name, "png", b"x").is_err(), "{name:?}");
         }
-        let count = std::fs::read_dir(root.path()).expect("the folder is there").count();
+        let count = std::fs::read_dir(root.path()).expect("the folder exists").count();
         assert_eq!(count, 0, "the folder was not created either");
         let path = folder.write("deep/a", "png", b"x").expect("the name is inside");
         assert!(path.ends_with("out/deep/a.png") && path.is_file());
@@ -94,14 +94,14 @@ mod tests {
     fn links_are_not_followed() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let out = root.path().join("out");
-        std::fs::create_dir(&out).expect("the folder can be made");
+        std::fs::create_dir(&out).expect("the folder can be created");
         let outside = root.path().join("outside.png");
         std::fs::write(&outside, "mine").expect("the folder can be written");
-        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be made");
-        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be made");
+        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be created");
+        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be created");
         let folder = Folder::new(&out);
         assert!(folder.write("a.png", "png", b"x").is_err());
         assert!(folder.write("up/b.png", "png", b"x").is_err());
-        assert_eq!(std::fs::read_to_string(&outside).expect("the file is intact"), "mine");
+        assert_eq!(std::fs::read_to_string(&outside).expect("the file exists"), "mine");
     }
 }

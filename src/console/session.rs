@@ -309,7 +309,7 @@ mod tests {
             l2explorer: false,
             maps: None,
         };
-        let world = WorldDraft::default().check().expect("open ground is sound");
+        let world = WorldDraft::default().check().expect("open ground is valid");
         let mut session = Session::new((choice, &|_| ()), world, Path::new("out"), Screen::PLAIN);
         for (line, expected) in [
             ("step 0", "1 to 100000"),

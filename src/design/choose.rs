@@ -41,7 +41,7 @@ pub enum Evidence {
         /// The element.
         element: Element,
     },
-    /// Variants that are each a step from the one before.
+    /// Variants, each one step from the previous one.
     Steps {
         /// The picked variants.
         picked: Vec<Picked>,

@@ -123,7 +123,7 @@ fn small_task() -> std::sync::Arc<TaskSpec> {
         number("S", "[8, 20]", "12"),
         number("T", "[1, 10]", "5")
     );
-    TaskSpec::from_json("small", &text).expect("a sound task")
+    TaskSpec::from_json("small", &text).expect("a valid task")
 }
 
 fn all_names() -> impl Iterator<Item = By> {
@@ -195,11 +195,11 @@ fn task_declares_the_measure_of_its_variants() {
         )
     };
     let compared = |by: &str, sample: &Sample| {
-        let task = TaskSpec::from_json("lit", &text(by)).expect("a sound task");
+        let task = TaskSpec::from_json("lit", &text(by)).expect("a valid task");
         let [day, dusk] = ["day", "dusk"].map(|name| task.variant(name).expect("it is declared"));
         let named = [("day".to_owned(), day.clone()), ("dusk".to_owned(), dusk.clone())];
-        let found = between(&Side::Variant(day), &Side::Variant(dusk), sample, Ok).expect("both are sound");
-        let matrix = variant_matrix(&named, sample, Ok).expect("both are sound");
+        let found = between(&Side::Variant(day), &Side::Variant(dusk), sample, Ok).expect("both are valid");
+        let matrix = variant_matrix(&named, sample, Ok).expect("both are valid");
         assert!((matrix.get(0, 1) - found.distance.total).abs() < 1e-12);
         found.by
     };
@@ -244,7 +244,7 @@ fn parts_show_what_a_measure_responds_to() {
     let (elements, looks) = parts("find_objects#red", "find_objects#blue", By::Pictures);
     assert!(
         looks[0].1 > looks[1].1,
-        "a changed colour of objects shows where the objects are: {looks:?}"
+        "a changed object colour is visible where the objects are: {looks:?}"
     );
     assert!(elements[4].is_some() && elements[..4].iter().all(Option::is_none));
     let (_, outcomes) = parts("find_objects#red", "find_objects#penalty", By::Dynamics);

@@ -15,7 +15,7 @@ fn task(affects: &str) -> Arc<TaskSpec> {
                "range_stimulus_distance": {{ "param": "reach" }} }} }} ],
            "variants": {{ "red": {{}}, "blue": {{ "color": "blue" }}, "rich": {{ "color": "blue", "pay": 9, "reach": 3 }} }} }}"#
     );
-    TaskSpec::from_json("t.json", &text).expect("the task is sound")
+    TaskSpec::from_json("t.json", &text).expect("the task is valid")
 }
 
 fn request() -> ElementsRequest {

@@ -73,8 +73,8 @@ mod tests {
     fn only_failures_of_the_last_evaluation_in_worlds_of_variants_are_linked() {
         let folder = tempfile::tempdir().expect("there is a folder for temporary files");
         let folder = folder.path().join("log");
-        let info = LoggerInfo::new(["success", "world_index"]).expect("two columns");
-        let mut writer = LogWriter::create(&folder, &info, &ScenarioInfo::default()).expect("a new log");
+        let info = LoggerInfo::new(["success", "world_index"]).expect("the columns are valid");
+        let mut writer = LogWriter::create(&folder, &info, &ScenarioInfo::default()).expect("the log is new");
         let known = json!({ "task": "maze", "variant": "tiny", "seed": 7 });
         let rows = [
             (0, BlockType::Test, 0.0, &known),
@@ -101,15 +101,15 @@ mod tests {
             ),
         ];
         for (number, (block, kind, success, params)) in (0_u32..).zip(rows) {
-            let when = Timestamp::from_unix_micros(i64::from(number)).expect("a time");
+            let when = Timestamp::from_unix_micros(i64::from(number)).expect("it is a valid time");
             let record = Record::new(block, u64::from(number), kind, "maze_tiny", when)
                 .with_metric("success", success)
                 .with_metric("world_index", f64::from(number));
-            let params = params.as_object().expect("an object").clone();
-            writer.write(&record.with_task_params(params)).expect("a row");
+            let params = params.as_object().expect("it is an object").clone();
+            writer.write(&record.with_task_params(params)).expect("it is valid");
         }
         drop(writer);
-        let found = links(&read_log(&folder).expect("a log"), "http://x/#/old");
+        let found = links(&read_log(&folder).expect("it is a valid log"), "http://x/#/old");
         let expected = (
             "maze#tiny, world 3".to_owned(),
             "http://x/#/play/maze?variant=tiny&seed=7&index=3".to_owned(),

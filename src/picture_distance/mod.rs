@@ -179,7 +179,7 @@ mod tests {
 
     fn world(environment: &str, objects: &str) -> World {
         let text = format!(r#"{{ "environment_params": {{ {environment} }}, "objects": [{objects}] }}"#);
-        World::from_json("w.json", &text).expect("a sound world")
+        World::from_json("w.json", &text).expect("a valid world")
     }
 
     fn with_tree(reward: f64, color: &str) -> World {
@@ -191,14 +191,14 @@ mod tests {
     fn views(worlds: &[&World]) -> Vec<Views> {
         let catalogue = Catalogue::default();
         let poses = poses(worlds, &catalogue).expect("all have free ground");
-        let views = |world: &&World| Views::new(world, &poses, &catalogue).expect("it is drawn");
+        let views = |world: &&World| Views::new(world, &poses, &catalogue).expect("it renders");
         worlds.iter().map(views).collect()
     }
 
     fn distance(a: &World, b: &World) -> f64 {
         let views = views(&[a, b]);
         let found = views[0].distance(&views[1], PictureMeasure::Oklab);
-        found.expect("they are of one size")
+        found.expect("the pictures have the same size")
     }
 
     #[test]
@@ -238,8 +238,8 @@ mod tests {
 
     #[test]
     fn each_world_uses_its_own_camera() {
-        let wide = World::from_json("w.json", r#"{ "agent_params": { "field_of_view": 100.0 } }"#).expect("sound");
-        let tall = World::from_json("w.json", r#"{ "agent_params": { "agent_height": 4.0 } }"#).expect("sound");
+        let wide = World::from_json("w.json", r#"{ "agent_params": { "field_of_view": 100.0 } }"#).expect("valid");
+        let tall = World::from_json("w.json", r#"{ "agent_params": { "agent_height": 4.0 } }"#).expect("valid");
         assert!(distance(&World::default(), &wide) > 0.0);
         assert!(distance(&World::default(), &tall) > 0.0);
     }
@@ -248,7 +248,7 @@ mod tests {
     fn occupied_positions_are_excluded() {
         let catalogue = Catalogue::default();
         let empty = world("", "");
-        assert_eq!(poses(&[&empty], &catalogue).expect("all is free").len(), 64);
+        assert_eq!(poses(&[&empty], &catalogue).expect("every position is free").len(), 64);
         // Positions are 25 m apart, the innermost 12.5 m from the centre on each axis.
         let tree = |x: f64, y: f64| format!(r#"{{ "class": "tree", "coordinates": [{x:?}, {y:?}], "solid": true }}"#);
         let one = world("", &tree(12.5, 12.5));

@@ -30,7 +30,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// From lifetimes, and those of another agent, if any.
+    /// Aggregates lifetimes, and compares them with those of another agent, if any.
     pub(super) fn new(
         lifetimes: &[LifetimeMetrics],
         others: &[LifetimeMetrics],

@@ -144,18 +144,18 @@ mod tests {
         let mut info = ScenarioInfo::default();
         info.extra
             .insert("scenario".to_owned(), serde_json::json!({ "name": scenario }));
-        let columns = LoggerInfo::new(["reward"]).expect("one column");
+        let columns = LoggerInfo::new(["reward"]).expect("the columns are valid");
         let mut writer = LogWriter::create(&folder, &columns, &info).expect("the folder is new");
-        let when = Timestamp::from_unix_micros(0).expect("1970");
+        let when = Timestamp::from_unix_micros(0).expect("the epoch is a valid time");
         let record = Record::new(0, 0, BlockType::Train, task, when).with_metric("reward", 1.0);
-        writer.write(&record).expect("there is room");
-        writer.finish().expect("there is room");
+        writer.write(&record).expect("there is disk space");
+        writer.finish().expect("there is disk space");
         read_log(&folder).expect("it was written")
     }
 
     #[test]
     fn each_lifetime_uses_its_own_experts_or_else_all() {
-        let expert = |scenario, task| SteLog::new(log_of(scenario, task)).expect("one task");
+        let expert = |scenario, task| SteLog::new(log_of(scenario, task)).expect("the log has one task");
         let experts = vec![
             expert("c-1-red", "f_red"),
             expert("c-11-red", "f_red"),

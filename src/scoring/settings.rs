@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     fn loaded(text: &str) -> Result<Loaded, Failure> {
-        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let path = folder.path().join("settings.json");
         std::fs::write(&path, text).expect("a file can be written there");
         let here = format!("{}/", folder.path().display());

@@ -50,7 +50,7 @@ impl Setup {
     }
 }
 
-/// A warning that these lifetimes, which are scored as one agent's, are those of several.
+/// A warning if these lifetimes, which are scored as one agent's, belong to several agents.
 fn several_agents(side: &str, logs: &[PathBuf]) -> Option<String> {
     let agent = |log: &PathBuf| Some(log_folders::scenario_info(log).get("agent")?.as_str()?.to_owned());
     let agents: BTreeSet<String> = logs.iter().filter_map(agent).collect();

@@ -78,7 +78,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
             })?,
         ),
     ]);
-    // Measure one core once more, so that both measurements see the machine in the same state.
+    // Measure one core again, so that both measurements see the machine in the same state.
     let [two, one] = [2, 1].map(|num_threads| steps_of(&square, NUM_ENVS_TWO_CORES, num_threads));
     let (two, one) = (two?, one?);
     let speedup = (two / one * 100.0).round() / 100.0;

@@ -25,17 +25,17 @@ fn packed(folder: &tempfile::TempDir) -> PathBuf {
 
 fn world() -> World {
     let json = std::fs::read_to_string(root().join(WORLD)).expect("the example is committed");
-    World::from_json(WORLD, &json).expect("the example is a sound world")
+    World::from_json(WORLD, &json).expect("the example is a valid world")
 }
 
 #[test]
 fn packed_model_can_be_used_in_worlds() {
     let folder = scratch();
     let bytes = std::fs::read(packed(&folder)).expect("the library was written");
-    let library = Library::from_bytes(&bytes).expect("what was packed is read again");
+    let library = Library::from_bytes(&bytes).expect("the packed library can be read");
     let model = &library.models()[0];
     assert_eq!((model.class(), model.name()), ("lighthouse", "1"));
-    let (whole, _) = model.level(0).expect("every model has its whole form");
+    let (whole, _) = model.level(0).expect("every model has a full level");
     let (coarse, error) = model.level(1).expect("835 triangles are worth simplifying");
     assert!(
         whole == 803 && coarse < whole / 2 && error > 0.0,
@@ -50,12 +50,12 @@ fn packed_model_can_be_used_in_worlds() {
     for _ in 0..60 {
         environment
             .step(Action::Continuous([10.0, 0.0, 0.0]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
     }
     let [x, y] = environment.agent().position;
     assert!(
         x.abs() < 1.6 && (1.3..1.6).contains(&y),
-        "it stops before the tower: {x}, {y}"
+        "the agent stops in front of the tower: {x}, {y}"
     );
     let class = environment.scene().items[0].class_id;
     let seen = environment
@@ -64,7 +64,7 @@ fn packed_model_can_be_used_in_worlds() {
         .iter()
         .filter(|other| **other == class)
         .count();
-    assert!(seen > 84 * 84 / 4, "it sees {seen} pixels of it");
+    assert!(seen > 84 * 84 / 4, "the agent sees {seen} pixels of the tower");
 
     let moment = environment.snapshot();
     let mut other = Environment::new(World::default());
@@ -72,10 +72,10 @@ fn packed_model_can_be_used_in_worlds() {
     assert_eq!(
         other.observe().rgb,
         environment.observe().rgb,
-        "a moment brings its library along"
+        "a snapshot keeps its library"
     );
     environment.reset(world());
-    assert_eq!(environment.warnings(), [], "and so does a reset");
+    assert_eq!(environment.warnings(), [], "a reset keeps the library, too");
     let unknown = |warning: &Warning| matches!(warning, Warning::UnknownAsset { .. });
     let without = Environment::new(world()).warnings();
     assert_eq!(without.len(), 3);
@@ -171,7 +171,7 @@ fn unpackable_files_are_refused_and_leave_no_library() {
     fn check(model: &Path, library: &Path, expected: &str) {
         let error = fail(1, &["assets", "pack", text(model), "-o", text(library)]);
         assert!(error.contains(expected), "{error}");
-        assert!(!library.exists(), "nothing is half written");
+        assert!(!library.exists(), "no partial file is left");
     }
     let folder = scratch();
     let library = folder.path().join("harbour.assets");
@@ -238,7 +238,7 @@ fn links_out_of_the_folder_are_not_followed() {
     let inside = folder.path().join("models");
     std::fs::create_dir(&inside).expect("the scratch folder can be written");
     std::fs::write(folder.path().join("secret.bin"), [0; 36]).expect("the scratch folder can be written");
-    std::os::unix::fs::symlink("../secret.bin", inside.join("lamp.bin")).expect("links can be made");
+    std::os::unix::fs::symlink("../secret.bin", inside.join("lamp.bin")).expect("links can be created");
     let json = r#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "lamp.bin"}]}"#;
     let model = inside.join("lamp.gltf");
     std::fs::write(&model, json).expect("the scratch folder can be written");
@@ -246,7 +246,7 @@ fn links_out_of_the_folder_are_not_followed() {
     let pack = ["assets", "pack", text(&model), "-o", text(&library)];
     let error = fail(1, &pack);
     assert!(error.contains("it leads out of the model's folder"), "{error}");
-    std::fs::remove_file(inside.join("lamp.bin")).expect("the link is there");
+    std::fs::remove_file(inside.join("lamp.bin")).expect("the link exists");
     std::fs::write(inside.join("lamp.bin"), [0; 36]).expect("the scratch folder can be written");
     let error = fail(1, &pack);
     assert!(error.contains("nothing to draw"), "now the file is read: {error}");

@@ -71,7 +71,7 @@ fn every_command_ends_quietly_without_a_reader() {
     succeed_in(path, "order find_objects#red dusk --matrix matrix.json");
     // A world with one object, so that its photographs take little time.
     let world = r#"{ "objects": [{ "class": "cube", "coordinates": [3, 4] }] }"#;
-    std::fs::write(path.join("world.json"), world).expect("the folder is ours");
+    std::fs::write(path.join("world.json"), world).expect("the folder is writable");
     for command in COMMANDS.into_iter().step_by(quick_or_full(3, 1)) {
         let arguments: Vec<&str> = command.split(' ').collect();
         let run = |output: Stdio, errors: Stdio| {

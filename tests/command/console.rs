@@ -25,8 +25,8 @@ fn stdout_of(output: &Output, out: &Path) -> String {
 /// A transcript without the world's hash, which changes as soon as worlds get a new key.
 fn without_hash(transcript: &str) -> String {
     let path = root().join(WORLD);
-    let text = std::fs::read_to_string(path).expect("the example is there");
-    let hash = World::from_json(WORLD, &text).expect("the example is sound").hash();
+    let text = std::fs::read_to_string(path).expect("the example is committed");
+    let hash = World::from_json(WORLD, &text).expect("the example is valid").hash();
     let token = format!("{}-{}-8{}-8{}-", &hash[..8], &hash[8..12], &hash[12..15], &hash[15..18]);
     transcript
         .replace(&hash, "HASH")
@@ -78,14 +78,14 @@ fn tour_transcript_is_unchanged() {
     files.sort();
     assert_eq!(files, ["map.png", "now.json", "view.png"]);
     let state = std::fs::read_to_string(out.join("now.json")).expect("the state was written");
-    assert!(state.contains("\"food\""), "what was spawned is in it");
+    assert!(state.contains("\"food\""), "the state contains the spawned object");
 }
 
 #[test]
 fn pipe_prints_the_same_as_a_script() {
     let folder = scratch();
     let out = folder.path().join("out");
-    let script = std::fs::read_to_string("examples/console/tour.txt").expect("the tour is there");
+    let script = std::fs::read_to_string("examples/console/tour.txt").expect("the tour is committed");
     let by_script = console(&[WORLD, "--script", "examples/console/tour.txt"], &out, "");
     let by_pipe = console(&[WORLD], &out, &script);
     assert_eq!(stdout_of(&by_script, &out), stdout_of(&by_pipe, &out));

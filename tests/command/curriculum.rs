@@ -92,7 +92,7 @@ fn probe_of_each_element_proves_that_nothing_else_differs() {
             }
         }
         let distances: Vec<f64> = rows.iter().map(|row| row[column].parse().expect("a number")).collect();
-        assert!(distances.is_sorted(), "outward is by growing distance: {distances:?}");
+        assert!(distances.is_sorted(), "outward means growing distance: {distances:?}");
         let shown: Vec<String> = rows
             .iter()
             .filter_map(|row| Some(row[0].rsplit_once('#')?.1.to_owned()))
@@ -112,7 +112,7 @@ fn every_element_of_the_five_tasks_can_be_probed() {
     let elements = ["state", "action", "transition", "reward", "observation"];
     for (number, task) in crate::looks_alone::TASKS.split(' ').enumerate() {
         for (own_column, element) in elements.into_iter().enumerate() {
-            // In the quick tier each task and each element once.
+            // The quick tier tests each task and each element once.
             if quick_or_full(own_column != number, false) {
                 continue;
             }
@@ -133,7 +133,7 @@ fn every_element_of_the_five_tasks_can_be_probed() {
 }
 
 #[test]
-fn made_variants_are_in_the_scenario_at_the_stated_distances() {
+fn generated_variants_are_in_the_scenario_at_the_stated_distances() {
     let folder = with_park();
     let table = succeed_in(
         folder.path(),
@@ -144,7 +144,7 @@ fn made_variants_are_in_the_scenario_at_the_stated_distances() {
     assert_eq!((name(first).as_str(), first.get("values")), ("blue", None));
     for (row, regime) in rows(&table, "variant").iter().zip(regimes(&scenario, "learning")) {
         let pays = regime["values"]["reward"].as_f64().unwrap_or(100.0);
-        let shown: f64 = row[5].parse().expect("a number");
+        let shown: f64 = row[5].parse().expect("it is a number");
         assert!((shown - (100.0 - pays) / 200.0).abs() < 1e-4, "{row:?}: {pays}");
         assert_eq!(row[1] == "made", regime.get("values").is_some());
     }
@@ -328,7 +328,7 @@ fn lifetimes_have_their_own_worlds_and_matching_experts() {
     assert!(worlds(&lives[1], "evaluation").is_superset(&worlds(&red, "evaluation")));
     assert!(
         !experts.join("curriculum-1-dusk.json").exists(),
-        "what is not learned has no expert"
+        "a held-out variant has no expert"
     );
 }
 
@@ -354,13 +354,13 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
 }
 
 #[test]
-fn even_steps_are_made_and_proven_or_their_reach_is_reported() {
+fn even_steps_are_generated_and_proven_or_the_reachable_distance_is_reported() {
     let steps = "park.json#blue --probe reward --step-distance 0.2 --tolerance 0.01 --steps";
     let (scenario, stderr) = designed(&format!("{steps} 5"));
     let rows = rows(&stderr, "variant");
     assert_eq!(rows.len(), 6, "{stderr}");
     for row in &rows[1..] {
-        let reward: f64 = row[5].parse().expect("a number");
+        let reward: f64 = row[5].parse().expect("it is a number");
         assert!((reward - 0.2).abs() <= 0.01, "{stderr}");
         assert!(
             [2, 3, 4, 6]
@@ -475,7 +475,7 @@ fn audit_syncs_nothing_and_fails_if_it_cannot_test() {
     let design = "curriculum find_objects#blue find_objects#red --learn 4 --eval-episodes 2 -o";
     assert!(
         synced(&format!("{design} one.json"), 0).0 > 0,
-        "what is written is kept"
+        "written files are synced to disk"
     );
     assert!(synced(&format!("{design} drift.json --drift linear"), 0).0 > 0);
     let (count, text) = synced("audit drift.json --lifetimes 2 --repeats 2", 1);

@@ -13,9 +13,9 @@ fn design(more: &str) -> String {
 #[track_caller]
 fn run_design(folder: &Path, more: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, &design(&format!("--worlds 0 {more}"))));
-    let stderr = String::from_utf8(output.stderr).expect("text");
+    let stderr = String::from_utf8(output.stderr).expect("it is text");
     assert!(output.status.success(), "{more}: {stderr}");
-    (String::from_utf8(output.stdout).expect("text"), stderr)
+    (String::from_utf8(output.stdout).expect("it is text"), stderr)
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn note_names_held_out_variants() {
     assert!(stderr.contains(note), "{stderr}");
     let (whole, stderr) = run_design(folder.path(), "--hold-out find_objects#dusk");
     assert!(!stderr.contains("note:"), "{stderr}");
-    // A bare name belongs to a task that is learned.
+    // A bare name refers to a learned task.
     let (bare, _) = run_design(folder.path(), "--hold-out dusk");
     assert_eq!(bare, whole);
 }
@@ -61,19 +61,19 @@ fn existing_files_in_a_folder_are_not_replaced() {
     let lifetimes = "--lifetimes 2 -o lives --experts experts";
     run_design(folder.path(), lifetimes);
     let file = folder.path().join("lives/curriculum-2.json");
-    let before = std::fs::read(&file).expect("a scenario");
+    let before = std::fs::read(&file).expect("the scenario exists");
     let other = format!("{lifetimes} --seed 5");
     let error = fail_in(folder.path(), 1, &design(&other));
     error.says("lives/curriculum-1.json: found a file, expected none");
     error.says("--force");
-    assert_eq!(std::fs::read(&file).expect("a scenario"), before);
+    assert_eq!(std::fs::read(&file).expect("the scenario exists"), before);
     // Nothing is written if a later folder is in the way.
-    std::fs::remove_dir_all(folder.path().join("lives")).expect("a folder");
+    std::fs::remove_dir_all(folder.path().join("lives")).expect("the folder exists");
     let error = fail_in(folder.path(), 1, &design(&other));
     assert!(error.contains("experts/curriculum-1-"), "{error}");
     assert!(!folder.path().join("lives").exists());
     run_design(folder.path(), &format!("{other} --force"));
-    assert_ne!(std::fs::read(&file).expect("a scenario"), before);
+    assert_ne!(std::fs::read(&file).expect("the scenario exists"), before);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn reward_probe_reports_whether_the_optimum_changes() {
             .find(|line| line.starts_with("find_objects#blue, find_objects#"))
             .map(str::to_owned)
     };
-    let half = row(&probe("half", 1)).expect("a row");
+    let half = row(&probe("half", 1)).expect("there is such a row");
     assert!(half.starts_with("find_objects#blue, find_objects#half  no"), "{half}");
     let turned = probe("turned", 1);
     assert!(row(&turned).is_some_and(|row| row.contains("  yes")), "{turned}");

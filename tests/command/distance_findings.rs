@@ -15,8 +15,8 @@ fn first_two(list: &[&str], by: &[&str]) -> f64 {
     matrix["values"][0][1].as_f64().expect("it is a number")
 }
 
-/// blue–penalty was 0.2358 in a list with wide, and 0.0157 with `get_to_goal#plain` beside them: with a second task in the
-/// list, all were silently measured by worlds.
+/// blue–penalty was 0.2358 in a list with wide, and 0.0157 in a list with `get_to_goal#plain`: if a list had variants of a
+/// second task, all pairs were silently measured by worlds.
 #[test]
 fn distance_of_a_pair_does_not_depend_on_the_list() {
     let pair = ["find_objects#blue", "find_objects#penalty"];
@@ -40,16 +40,16 @@ fn distance_of_a_pair_does_not_depend_on_the_list() {
     assert!(refused.contains("found variants of several tasks"), "{refused}");
     assert!(
         succeed(&[&["order"], &more[..]].concat()).contains(" by parameters"),
-        "it says by what"
+        "the output names the measure"
     );
     assert!(
         succeed(&[&["order"], &many[..], &["--by", "worlds"]].concat()).contains(" by worlds"),
-        "it says by what"
+        "the output names the measure"
     );
 }
 
-/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`; nothing reads `reach` of objects that are
-/// triggered by contact.
+/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`, but `reach` has no effect on objects that
+/// are triggered by contact.
 #[test]
 fn unread_parameters_make_no_distance() {
     for (variant, element, idle) in [
@@ -58,7 +58,7 @@ fn unread_parameters_make_no_distance() {
     ] {
         let stdout = succeed(&["vary", variant, "--element", element, "--distance", "0.5", "--json"]);
         let found: Value = serde_json::from_str(&stdout).expect("it is JSON");
-        let values = found["variant"]["found"].as_object().expect("it names values");
+        let values = found["variant"]["found"].as_object().expect("the variant has values");
         assert!(
             found["held"].as_object().is_some_and(|held| !held.is_empty()),
             "{found}"

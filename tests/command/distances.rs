@@ -22,7 +22,7 @@ fn pictures_distinguish_visible_changes_only() {
         assert_eq!(
             from_green("paying.json")["total"],
             0.0,
-            "{by}: what a tree pays cannot be seen"
+            "{by}: a tree's reward is invisible"
         );
         let other = from_green("sand.json");
         assert!(other["total"].as_f64() > Some(0.01), "{other}");
@@ -47,13 +47,13 @@ fn every_measure_has_a_name_for_the_command() {
             "distance find_objects#red penalty --by {by} --worlds 1 --json"
         ));
         assert_eq!(found["by"], *by);
-        let total = found["total"].as_f64().expect("a number");
+        let total = found["total"].as_f64().expect("it is a number");
         let of_rewards = "parameters worlds rewards dynamics behavior behavior:success";
         let is_of_rewards = of_rewards.split(' ').any(|name| name == *by);
         assert_eq!(
             total > 0.0,
             is_of_rewards,
-            "{by}: red and penalty differ in what they pay alone, found {total}"
+            "{by}: red and penalty differ only in rewards, found {total}"
         );
     }
 }
@@ -63,7 +63,7 @@ fn order_and_curriculum_accept_the_same_names() {
     let order = json("order find_objects#red blue penalty --by behavior --worlds 2 --json");
     assert_eq!(order["by"], "behavior");
     let values = &order["matrix"]["values"][0];
-    assert_eq!(values[1], 0.0, "red and blue ask for the same");
+    assert_eq!(values[1], 0.0, "red and blue require the same behaviour");
     assert!(values[2].as_f64() > Some(0.0));
     let designed = json("curriculum find_objects#red blue penalty --by rewards --worlds 0");
     assert!(
@@ -76,10 +76,10 @@ fn order_and_curriculum_accept_the_same_names() {
 fn shares_are_of_the_tasks_diameter() {
     let between = |scale: &str| json(&format!("distance find_objects#red dusk --scale {scale} --json"));
     let (units, share) = (between("units"), between("share"));
-    let description = share["compared"].as_str().expect("it says how");
+    let description = share["compared"].as_str().expect("the output describes the comparison");
     let (_, diameter) = description.split_once("diameter of ").expect("the diameter is printed");
     let diameter: f64 = diameter.parse().expect("it is a number");
-    let [units, share] = [units, share].map(|found| found["total"].as_f64().expect("a number"));
+    let [units, share] = [units, share].map(|found| found["total"].as_f64().expect("it is a number"));
     assert!(
         units > 0.0 && (units / diameter - share).abs() < 1e-12,
         "{units} {share} {diameter}"
@@ -90,7 +90,7 @@ fn shares_are_of_the_tasks_diameter() {
 fn placements_are_measured_after_rejections() {
     let between = |a: &str, b: &str| {
         let found = json(&format!("distance {a} {b} --by placements --json"));
-        found["total"].as_f64().expect("a number")
+        found["total"].as_f64().expect("it is a number")
     };
     assert_eq!(between("find_objects#red", "find_objects#blue"), 0.0);
     assert!(between("find_objects#red", "find_objects#wide") > 0.0);

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::terminal::{Says, driftworld_in, fail_in, json, output, scratch, succeed, succeed_in, text};
 use crate::tier::quick_or_full;
 
-/// A task whose light declares the elements in `affects`, and which sets a reach that nothing reads.
+/// A task whose parameter for the light declares the elements in `affects`, and whose reach has no effect.
 fn task(affects: &str) -> String {
     format!(
         r#"{{ "name": "lamp", "parameters": {{
@@ -58,7 +58,7 @@ fn two_variants_are_compared_for_a_learners_images() {
 #[test]
 fn contradiction_is_reported_with_its_first_case() {
     let folder = scratch();
-    let lamp = |affects: &str| fs::write(folder.path().join("lamp.json"), task(affects)).expect("the folder is ours");
+    let lamp = |affects: &str| fs::write(folder.path().join("lamp.json"), task(affects)).expect("it is writable");
     lamp("R");
     for arguments in ["elements lamp.json", "validate --elements lamp.json"] {
         let error = fail_in(folder.path(), 1, arguments);
@@ -76,7 +76,7 @@ fn contradiction_is_reported_with_its_first_case() {
         folder.path(),
         "validate --elements --json lamp.json",
     ));
-    let report: Value = serde_json::from_slice(&report.stdout).expect("JSON");
+    let report: Value = serde_json::from_slice(&report.stdout).expect("it is JSON");
     assert_eq!(
         (&report[0]["valid"], &report[0]["problems"][0]["code"]),
         (&false.into(), &"task/elements".into())
@@ -98,7 +98,7 @@ fn scenario_is_refused_for_false_claims_of_its_tasks() {
         fs::write(folder.path().join("lamp.json"), task(affects)).unwrap();
         let done = output(&mut driftworld_in(folder.path(), "validate s.json --elements --json"));
         assert_eq!(done.status.success(), is_sound, "{affects}");
-        let verdicts: Value = serde_json::from_slice(&done.stdout).expect("JSON");
+        let verdicts: Value = serde_json::from_slice(&done.stdout).expect("it is JSON");
         assert_eq!(verdicts[0]["valid"], is_sound);
         assert_eq!(verdicts[0]["elements"][0]["task"], "lamp", "{verdicts}");
     }

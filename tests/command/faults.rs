@@ -89,7 +89,7 @@ fn run_with_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, 
             .into_iter()
             .filter(|(name, _)| is_table(name));
         let torn: Vec<_> = tables.filter(|(_, bytes)| bytes.last() != Some(&b'\n')).collect();
-        assert_eq!(torn, [], "half a row stays");
+        assert_eq!(torn, [], "a partial row is left");
         return ended.status.success();
     }
     let mut command = driftworld_in(folder, arguments);
@@ -106,7 +106,7 @@ fn run_with_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, 
         .args([signal, &child.id().to_string()])
         .stderr(Stdio::null())
         .status();
-    let ended = child.wait_with_output().expect("it ends");
+    let ended = child.wait_with_output().expect("the command ends");
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();
     let is_stopped = ended.status.signal() == Some(number) || ended.status.code() == Some(128 + number);
     assert!(

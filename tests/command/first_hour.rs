@@ -19,7 +19,7 @@ const BERRIES: &str = r#"{ "name": "berries",
 
 fn with_berries() -> tempfile::TempDir {
     let folder = scratch();
-    std::fs::write(folder.path().join("bush.json"), BERRIES).expect("the folder is ours");
+    std::fs::write(folder.path().join("bush.json"), BERRIES).expect("the folder is writable");
     folder
 }
 
@@ -69,7 +69,7 @@ fn colours_appear_only_on_request() {
         [done.stdout, done.stderr].map(|bytes| bytes.contains(&b'\x1b'))
     };
     let order = ["order", "find_objects#red", "dusk"];
-    assert_eq!(colored(&order, None), [false, false], "a pipe is no terminal");
+    assert_eq!(colored(&order, None), [false, false], "a pipe is not a terminal");
     assert_eq!(
         colored(&[&order[..], &["--color", "always"]].concat(), Some("NO_COLOR")),
         [true, false]
@@ -119,7 +119,7 @@ fn explain_prints_no_rows_of_zeros() {
     assert!(parts.contains("light") && !parts.contains("0.0000"), "{shown}");
 }
 
-// 8. One spelling.
+// 8. Consistent spelling of arguments.
 
 #[test]
 fn elements_are_accepted_by_letter_or_name_everywhere() {
@@ -281,7 +281,7 @@ fn documents_are_read_from_standard_input() {
     assert!(code == Some(1) && stderr.contains("standard input:1:"), "{stderr}");
 }
 
-// 9. Validate, then die.
+// 9. Documents that validate but then fail.
 
 #[test]
 fn documents_from_new_and_export_validate_sample_and_run() {
@@ -325,7 +325,7 @@ fn all_mistakes_are_reported_at_once() {
         "world": { "max_steps": "x", "environment_params": { "light_intensity": { "param": "lihgt" } } },
         "groups": [{ "name": "g", "count": 1, "object": { "class": "bushh" }, "placement": { "box": { "low": [0, 0], "high": [1, 1] } } }],
         "variants": { "a": { "extends": "c" } } }"#;
-    std::fs::write(folder.path().join("t.json"), task).expect("the folder is ours");
+    std::fs::write(folder.path().join("t.json"), task).expect("the folder is writable");
     let error = fail_in(folder.path(), 1, &["validate", "t.json"]);
     for place in "/parameters/light/default /require/0 /world/max_steps \
          /world/environment_params/light_intensity /groups/0/object/class /variants/a/extends"
@@ -346,7 +346,7 @@ fn unknown_class_error_names_the_nearest() {
         ("bushh", "shrub"),
         ("house", "building"),
     ] {
-        std::fs::write(folder.path().join("w.json"), world(class)).expect("the folder is ours");
+        std::fs::write(folder.path().join("w.json"), world(class)).expect("the folder is writable");
         let error = fail_in(folder.path(), 1, &["validate", "w.json"]);
         assert!(error.contains(&format!("did you mean {near:?}?")), "{error}");
     }
@@ -362,19 +362,19 @@ fn readable_files_are_judged_beside_unreadable_ones() {
     stderr.says("1 of 2 files refused");
 }
 
-// 10. Answers that help.
+// 10. Helpful answers.
 
 #[test]
 fn byte_order_mark_and_three_numbers_are_handled() {
     let folder = scratch();
-    std::fs::write(folder.path().join("bom.json"), format!("\u{feff}{BERRIES}")).expect("the folder is ours");
+    std::fs::write(folder.path().join("bom.json"), format!("\u{feff}{BERRIES}")).expect("the folder is writable");
     succeed_in(folder.path(), "validate bom.json");
     succeed_in(folder.path(), "sample bom.json");
     let (_, _, stderr) = fed(folder.path(), "step 1 2.5 0\n", &["console", "find_objects"]);
     assert!(stderr.contains("write: step 1 1 2.5 0"), "{stderr}");
 }
 
-// 11. The order of what is named.
+// 11. The order of named variants.
 
 #[test]
 fn variant_named_first_is_learned_first() {
@@ -384,13 +384,13 @@ fn variant_named_first_is_learned_first() {
             folder.path(),
             &format!("curriculum find_objects#{names} --worlds 0 --force -o s.json --json"),
         );
-        let first = names.split(' ').next().expect("three names");
+        let first = names.split(' ').next().expect("there are three names");
         assert_eq!(found["variants"][0]["variant"], first, "{found}");
     }
 }
 
 #[test]
-fn probe_takes_the_named_variants_and_prints_the_values_of_made_ones() {
+fn probe_takes_the_named_variants_and_prints_the_values_of_generated_ones() {
     let folder = scratch();
     let probe = |line: &str| {
         let line = format!("curriculum find_objects#red {line} --probe O --worlds 0 --force -o s.json");
@@ -407,7 +407,7 @@ fn probe_takes_the_named_variants_and_prints_the_values_of_made_ones() {
     assert_eq!(shown.lines().filter(sets).count(), 2, "{shown}");
 }
 
-// 12. One spelling of a variant.
+// 12. One name per variant.
 
 #[test]
 fn variant_has_one_spelling_in_all_tables() {

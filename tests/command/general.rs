@@ -89,7 +89,7 @@ fn folder_of_worlds_has_exactly_one_file_each() {
     let folder = scratch();
     succeed_in(folder.path(), "sample get_to_goal#soft --count 3 -o worlds");
     let mut names: Vec<_> = std::fs::read_dir(folder.path().join("worlds"))
-        .expect("the folder was made")
+        .expect("the folder was created")
         .map(|entry| entry.expect("the folder can be listed").file_name())
         .collect();
     names.sort();
@@ -130,7 +130,7 @@ fn sheet_shows_variants_or_a_scenarios_variants() {
     assert_eq!(svg.matches("<image ").count(), 8, "four variants");
     assert!(
         svg.contains(" ([-10, 10, -10, -10]).</text>"),
-        "values that differ are said, and those in brackets are whole"
+        "differing values are listed, and bracketed values are complete"
     );
 }
 
@@ -159,7 +159,7 @@ fn photographs_match_their_manifest() {
     assert_eq!(manifest["classes"]["Car"], 6);
     assert_eq!(listed[12]["file"], "001_car_1/yaw_000_up_00_rgb.png");
     let inside = std::fs::read_dir(folder.path().join("deep"))
-        .expect("the folder is there")
+        .expect("the folder exists")
         .count();
     assert_eq!(inside, 1, "nothing was written beside the folder");
 }
@@ -235,7 +235,7 @@ fn found_variant_is_appended_to_its_task() {
     let path = folder.path();
     let command = "vary find_objects#red --element O --distance 0.5 -o mine.json";
     let stdout = succeed_in(path, command);
-    assert!(stdout.contains("\nholds: "), "what stays is printed:\n{stdout}");
+    assert!(stdout.contains("\nholds: "), "unchanged values are printed:\n{stdout}");
     let distance = json_in(path, "distance mine.json#red mine.json#found --json").to_string();
     assert!(distance.contains("0.5") || distance.contains("0.4999"), "{distance}");
     let error = fail_in(path, 1, command);
@@ -261,7 +261,7 @@ fn l2explorer_maps_can_be_used_in_worlds() {
         return;
     };
     let world = succeed(&["convert", "examples/tasks/settlement.json#near", "--maps", text(&maps)]);
-    assert!(world.contains("map_regions"), "the world carries the map");
+    assert!(world.contains("map_regions"), "the world contains the map");
     succeed(&["validate", text(&maps)]);
 }
 
@@ -281,10 +281,10 @@ fn devices_and_links_are_kept() {
 
     let folder = scratch();
     let (file, link) = (folder.path().join("world.json"), folder.path().join("latest.json"));
-    std::fs::write(&file, "").expect("the folder is ours");
-    std::os::unix::fs::symlink(&file, &link).expect("the folder is ours");
+    std::fs::write(&file, "").expect("the folder is writable");
+    std::os::unix::fs::symlink(&file, &link).expect("the folder is writable");
     sample(text(&link));
     assert!(link.is_symlink());
-    let written = std::fs::read_to_string(&file).expect("the link led here");
+    let written = std::fs::read_to_string(&file).expect("the link points to this file");
     assert_eq!(written, printed);
 }

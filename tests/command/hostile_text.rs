@@ -1,4 +1,4 @@
-//! Documents, logs, settings and file names that try to control the terminal: escape sequences, line breaks that fake a line,
+//! Documents, logs, settings and file names that try to control the terminal: escape sequences, line breaks that forge a line,
 //! text with reversed direction. No subcommand prints them unescaped.
 
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ fn hostile() -> String {
 struct Stage {
     folder: tempfile::TempDir,
     tried: BTreeSet<String>,
-    /// Hostile output found.
+    /// Hostile output that was found.
     leaks: Vec<String>,
 }
 
@@ -364,7 +364,7 @@ fn logs(stage: &mut Stage) {
         ));
         assert!(
             String::from_utf8_lossy(&raw.stdout).contains('\u{202e}'),
-            "what is wanted raw is raw"
+            "raw output is unchanged"
         );
         stage.run(&["metrics", &log]);
         stage.run(&["metrics", &log, "--json"]);
@@ -392,7 +392,7 @@ fn logs(stage: &mut Stage) {
         let shown = stage.run(&["report", &log, "-o", "-"]).stdout;
         assert!(number > 0 || !shown.is_empty());
     }
-    let plots = fs::read_dir(stage.path().join("plots")).expect("figures were drawn");
+    let plots = fs::read_dir(stage.path().join("plots")).expect("figures were written");
     for plot in plots.map(|plot| plot.expect("the folder can be listed").path()) {
         if plot.extension().is_some_and(|ending| ending == "svg") {
             let drawn = fs::read_to_string(&plot).expect("SVG is text");
@@ -531,7 +531,7 @@ fn unprintable_characters_of_an_option_are_escaped_once() {
         ["sample", "find_objects", "--count", "\u{202e}"],
         ["run", "s.json", "--agent", "\u{1b}[2J"],
     ] {
-        let said = String::from_utf8(output(&mut driftworld_in(root(), &arguments[..])).stderr).expect("UTF-8");
+        let said = String::from_utf8(output(&mut driftworld_in(root(), &arguments[..])).stderr).expect("it is UTF-8");
         assert!(said.contains(r"\u{") && !said.contains(r"\\u{"), "{said}");
     }
 }

@@ -14,7 +14,7 @@ const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\t
 #[track_caller]
 fn run(folder: &Path, code: i32, arguments: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, arguments));
-    let [out, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
+    let [out, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("it is UTF-8"));
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{error}");
     (out, error)
 }
@@ -148,7 +148,7 @@ fn every_problem_of_every_log_is_located() {
     out.says("logs/good: valid;");
 
     let (out, _) = run(base.path(), 1, "logs validate -R logs --json");
-    let found: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let found: serde_json::Value = serde_json::from_str(&out).expect("it is JSON");
     let valid: Vec<_> = found
         .as_array()
         .into_iter()

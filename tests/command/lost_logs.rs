@@ -41,8 +41,8 @@ fn damage_log(jobs: &str, log: &Path, scenario: &str, damage: impl FnOnce(&Path)
     let table = log.join("worker-default/0-train/data-log.tsv");
     while fs::metadata(&table).map_or(0, |found| found.len()) < 3000 {
         assert!(
-            child.try_wait().expect("the child can be asked").is_none(),
-            "it is over before anything happens"
+            child.try_wait().expect("it has a status").is_none(),
+            "the run ended before the damage"
         );
         std::thread::yield_now();
     }
@@ -80,12 +80,12 @@ fn missing_folder_is_an_error_and_is_not_recreated() {
         let log = folder.path().join(format!("swapped-{jobs}"));
         let away = log.with_extension("away");
         let error = damage_log(jobs, &log, &scenario, |_| {
-            fs::rename(&log, &away).expect("the folder is ours");
-            fs::create_dir(&log).expect("the folder is ours");
+            fs::rename(&log, &away).expect("the folder is writable");
+            fs::create_dir(&log).expect("the folder is writable");
         });
         assert!(error.contains("found another directory"), "{error}");
-        assert_eq!(fs::read_dir(&log).expect("it is there").count(), 0);
-        assert!(away.join("logger_info.json").exists(), "what was put aside is whole");
+        assert_eq!(fs::read_dir(&log).expect("it exists").count(), 0);
+        assert!(away.join("logger_info.json").exists(), "the renamed log is intact");
     }
 }
 
@@ -104,18 +104,18 @@ fn truncated_removed_or_replaced_file_is_an_error() {
         };
         let cut = |table: &Path| {
             let file = fs::OpenOptions::new().write(true).open(table);
-            file.and_then(|file| file.set_len(1000)).expect("the file is ours");
+            file.and_then(|file| file.set_len(1000)).expect("the file is writable");
         };
         check("cut", &cut, " in 1");
         check(
             "removed",
-            &|table| fs::remove_file(table).expect("the file is ours"),
+            &|table| fs::remove_file(table).expect("the file is writable"),
             "found no file",
         );
         let replace = |table: &Path| {
             fs::copy(table, table.with_extension("copy"))
                 .and_then(|_| fs::rename(table.with_extension("copy"), table))
-                .expect("the file is ours");
+                .expect("the file is writable");
         };
         check("replaced", &replace, "expected the ");
     }
@@ -129,7 +129,7 @@ fn new_run_in_a_replaced_folder_is_undisturbed() {
     let scenario_text = fs::read_to_string(&scenario).expect("it was written");
     write(&small, &scenario_text.replace("2000", "20"));
     damage_log("2", &log, &scenario, |_| {
-        fs::rename(&log, log.with_extension("away")).expect("the folder is ours");
+        fs::rename(&log, log.with_extension("away")).expect("the folder is writable");
         succeed(&["run", text(&small), "--agent", "random", "--output", text(&log)]);
     });
     let alone = folder.path().join("alone");

@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 
 /// A lifetime in which tasks are learned in turn, all evaluated before and after each; `skill` sets its level.
 fn live(folder: &Path, tasks: &[&str], skill: f64) {
-    let info = LoggerInfo::new(["reward"]).expect("a column");
+    let info = LoggerInfo::new(["reward"]).expect("the columns are valid");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
     let mut exp_num = 0;
     let mut experience = |block: u64, kind: BlockType, task: &str, reward: f64| {
-        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + exp_num as i64).expect("a day in 2020");
+        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + exp_num as i64).expect("it is a valid time");
         let record = Record::new(block, exp_num, kind, task, when).with_metric("reward", reward);
         log.write(&record).expect("the folder can be written");
         exp_num += 1;
@@ -75,7 +75,7 @@ fn l2metrics_example_gives_its_files() {
         expected["perf_recovery"]
     );
     let check_near = |name: &str| {
-        let value = |document: &Value| document[name].as_f64().expect("a number");
+        let value = |document: &Value| document[name].as_f64().expect("it is a number");
         let (found, expected) = (value(&file("multi_task_metrics.json")), value(&expected));
         assert!(
             (found - expected).abs() <= 1e-9 * expected.abs(),
@@ -89,7 +89,7 @@ fn l2metrics_example_gives_its_files() {
     let expected = parsed(&read(dir.join("expected/multi_task_settings.json")));
     for (name, value) in expected
         .as_object()
-        .expect("settings")
+        .expect("these are settings")
         .iter()
         .filter(|(name, _)| *name != "log_dir")
     {
@@ -158,12 +158,12 @@ fn many_lifetimes_have_intervals_and_tables() {
     let row = shown
         .lines()
         .find(|line| line.starts_with("avg_eval_perf"))
-        .expect("a row of that metric");
+        .expect("the metric has a row");
     assert!(row.contains(" to ") && row.contains("4 x 2"), "{row}");
     assert_eq!(
         succeed_in(folder.path(), arguments),
         shown,
-        "the same seed, the same intervals"
+        "the same seed gives the same intervals"
     );
     // Four whole runs have so few distinct resamples that their percentiles hardly depend on the seed; resampling within tasks
     // has more.
@@ -174,7 +174,7 @@ fn many_lifetimes_have_intervals_and_tables() {
     assert_ne!(by_strata(1), by_strata(0));
     assert!(
         row.matches(" to ").count() == 3,
-        "the bootstrap's interval and Student's, of which there are two: {row}"
+        "one bootstrap interval and two Student intervals: {row}"
     );
     assert!(shown.contains("as logged") && shown.contains("mean reward"), "{shown}");
     let table = read(folder.path().join("out/ll_metrics.tsv"));
@@ -201,7 +201,7 @@ fn figures_are_written_beside_the_results() {
     succeed_in(folder.path(), "metrics mine/run0 -P -T raw lb");
     let plots = folder.path().join("results/plots");
     let mut names: Vec<String> = std::fs::read_dir(&plots)
-        .expect("the folder was made")
+        .expect("the folder was created")
         .map(|entry| {
             entry
                 .expect("it can be listed")
@@ -237,7 +237,7 @@ fn two_agents_are_compared() {
     assert_eq!(
         (of("avg_train_perf"), of("avg_eval_perf")),
         (Some(1.0), Some(1.0)),
-        "every run beats every run"
+        "every run of the first agent beats every run of the second"
     );
     let shown = succeed_in(folder.path(), "metrics -R theirs --against mine -n none");
     assert!(shown.contains("against 4 lifetimes of another agent"), "{shown}");
@@ -245,7 +245,7 @@ fn two_agents_are_compared() {
         .lines()
         .rev()
         .find(|line| line.starts_with("avg_eval_perf"))
-        .expect("a row of that metric");
+        .expect("the metric has a row");
     let cells: Vec<&str> = row.split_whitespace().collect();
     assert_eq!(
         cells.join(" "),
@@ -355,7 +355,7 @@ fn strict_definitions_and_noise_affect_the_result() {
 fn every_unscorable_log_is_reported() {
     let folder = two_agents();
     for run in ["mine/run1", "mine/run3"] {
-        std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
+        std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it exists");
     }
     let lacks = |run: &str| {
         format!("{run}/logger_info.json: found no such file, expected a JSON object with the list metrics_columns")

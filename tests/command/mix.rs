@@ -18,11 +18,11 @@ fn mixture_of_two_tasks_is_designed_run_and_logged() {
     let refused = fail(1, &design(""));
     assert!(refused.contains("expected two variants of one task"), "{refused}");
     succeed_in(folder.path(), &design("--mix=task -o mix.json"));
-    let designed: Value = serde_json::from_str(&read(folder.path().join("mix.json"))).expect("JSON");
-    let blocks = designed["blocks"].as_array().expect("blocks");
+    let designed: Value = serde_json::from_str(&read(folder.path().join("mix.json"))).expect("it is JSON");
+    let blocks = designed["blocks"].as_array().expect("there are blocks");
     let learning = blocks.iter().filter(|block| block["type"] == "learning");
     let regimes: Vec<&Value> = learning
-        .flat_map(|block| block["regimes"].as_array().expect("regimes"))
+        .flat_map(|block| block["regimes"].as_array().expect("there are regimes"))
         .collect();
     let mut worlds = Vec::new();
     for regime in &regimes {
@@ -30,12 +30,12 @@ fn mixture_of_two_tasks_is_designed_run_and_logged() {
         assert_ne!(regime["drift"]["task"], regime["task"], "{regime}");
         let (first, count) = (regime["first_index"].as_u64(), regime["count"].as_u64());
         let first = first.unwrap_or(0);
-        worlds.extend((first..first + count.expect("a count")).map(|index| (regime["seed"].as_u64(), index)));
+        worlds.extend((first..first + count.expect("it is a number")).map(|index| (regime["seed"].as_u64(), index)));
     }
     let all = worlds.len();
     worlds.sort_unstable();
     worlds.dedup();
-    assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
+    assert_eq!((worlds.len(), all), (36, 36), "no layout is used twice");
     succeed_in(folder.path(), "run mix.json --agent still --output log");
     let info = read(folder.path().join("log/scenario_info.json"));
     info.says("get_to_goal#plain");

@@ -43,7 +43,7 @@ fn may_fail(command: &str) -> bool {
 
 fn below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder).expect("the folder is there").flatten() {
+    for entry in fs::read_dir(folder).expect("the folder exists").flatten() {
         let path = entry.path();
         if path.is_dir() {
             found.extend(below(&path));
@@ -55,7 +55,7 @@ fn below(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn mode(path: &Path) -> u32 {
-    fs::metadata(path).expect("it is there").permissions().mode() & 0o777
+    fs::metadata(path).expect("it exists").permissions().mode() & 0o777
 }
 
 /// Runs a command with this umask in a folder.
@@ -72,10 +72,10 @@ fn under(umask: &str, folder: &Path, command: &str) {
 
 fn prepare(folder: &Path) {
     let world = r#"{ "objects": [{ "class": "cube", "coordinates": [3, 4] }] }"#;
-    fs::write(folder.join("small.json"), world).expect("the folder is ours");
+    fs::write(folder.join("small.json"), world).expect("the folder is writable");
     let regime = r#"{ "task": "find_objects", "variant": "red", "count": 2, "max_steps": 5 }"#;
     let expert = format!(r#"{{ "name": "e", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
-    fs::write(folder.join("expert.json"), expert).expect("the folder is ours");
+    fs::write(folder.join("expert.json"), expert).expect("the folder is writable");
 }
 
 /// Runs all commands.
@@ -103,7 +103,7 @@ fn new_files_follow_the_umask_and_overwritten_ones_keep_their_mode() {
         write_all(umask, folder.path());
         let out = folder.path().join("out");
         let found = below(&out);
-        assert!(found.len() > 60, "too little was written: {found:?}");
+        assert!(found.len() > 60, "too few files were written: {found:?}");
         for path in &found {
             let expected = if path.is_dir() { folders } else { files };
             assert_eq!(

@@ -7,15 +7,15 @@ use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo
 use serde_json::Value;
 
 pub(crate) fn parsed(text: &str) -> Value {
-    serde_json::from_str(text).expect("JSON")
+    serde_json::from_str(text).expect("it is JSON")
 }
 
 /// Writes a log: a row for each block, type, task, world index and reward.
 pub(crate) fn write(folder: &Path, rows: &[(u64, BlockType, &str, u32, f64)]) {
-    let info = LoggerInfo::new(["reward", "world_index"]).expect("two columns");
+    let info = LoggerInfo::new(["reward", "world_index"]).expect("the columns are valid");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
     for (number, (block, block_type, task, world, reward)) in (0..).zip(rows) {
-        let when = Timestamp::from_unix_micros(number as i64).expect("a time");
+        let when = Timestamp::from_unix_micros(number as i64).expect("it is a valid time");
         let record = Record::new(*block, number, *block_type, *task, when).with_metric("reward", *reward);
         let record = record.with_metric("world_index", f64::from(*world));
         log.write(&record).expect("the folder can be written");
@@ -76,12 +76,12 @@ fn good_appears_only_outside_the_null_band() {
     let band = &json["null"]["forward_transfer_contrast"];
     assert!(band["high"].as_f64() < band["value"].as_f64(), "{json}");
     assert!(
-        band["p"].as_f64().expect("a number") < 0.01 && band["exchanged"] == "worlds",
+        band["p"].as_f64().expect("it is a number") < 0.01 && band["exchanged"] == "worlds",
         "{json}"
     );
     // The files are in l2metrics' format.
     succeed_in(folder.path(), &["metrics", "learns", "-O", "results"]);
-    let file = std::fs::read_to_string(folder.path().join("results/learns_metrics.json")).expect("a file");
+    let file = std::fs::read_to_string(folder.path().join("results/learns_metrics.json")).expect("the file exists");
     for ours in ["readings", "null", "contrasts", "reached", "forward_transfer_contrast"] {
         assert_eq!(parsed(&file).get(ours), None, "{ours}");
     }

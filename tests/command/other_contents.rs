@@ -55,16 +55,16 @@ const COMMANDS: [(&str, &[&str]); 27] = [
 fn everything() -> tempfile::TempDir {
     let folder = scratch();
     let path = folder.path();
-    fs::copy(root().join("examples/tasks/find_objects.json"), path.join("task.json")).expect("the example is there");
+    fs::copy(root().join("examples/tasks/find_objects.json"), path.join("task.json")).expect("it is committed");
     succeed_in(path, &["sample", "task.json", "-o", "world.json"]);
     let short = ["--learn", "1", "--eval-episodes", "1"];
     let curriculum = ["curriculum", "task.json#red", "task.json#blue", "-o", "scenario.json"];
     succeed_in(path, &[&curriculum[..], &short[..]].concat());
     succeed_in(path, &["order", "task.json", "--matrix", "matrix.json"]);
     succeed_in(path, &["run", "scenario.json", "--agent", "random", "--output", "log"]);
-    fs::write(path.join("settings.json"), r#"{ "perf_measure": "reward" }"#).expect("the folder is ours");
+    fs::write(path.join("settings.json"), r#"{ "perf_measure": "reward" }"#).expect("the folder is writable");
     let maps = root().join("tests/documents/good/maps/one_map.json");
-    fs::copy(maps, path.join("maps.json")).expect("the document is there");
+    fs::copy(maps, path.join("maps.json")).expect("the document is committed");
     folder
 }
 
@@ -103,8 +103,8 @@ fn advice_in_messages_works() {
     let folder = everything();
     let path = folder.path();
     let error = fail_in(path, 1, &["run", "task.json"]);
-    let advised = error.split('`').nth(1).expect("a command between backticks");
-    fs::remove_file(path.join("scenario.json")).expect("it is there");
+    let advised = error.split('`').nth(1).expect("the advice has a command in backticks");
+    fs::remove_file(path.join("scenario.json")).expect("it exists");
     succeed_in(path, &advised.split(' ').skip(1).collect::<Vec<_>>());
     assert!(fs::read_to_string(path.join("scenario.json")).is_ok_and(|text| text.contains("\"blocks\"")));
 }
@@ -114,7 +114,7 @@ fn marked(folder: &Path) {
     for (document, _) in KINDS.into_iter().filter(|(document, _)| *document != "log") {
         let path = folder.join(document);
         let text = fs::read_to_string(&path).expect("it was written");
-        fs::write(&path, format!("\u{feff}{text}")).expect("the folder is ours");
+        fs::write(&path, format!("\u{feff}{text}")).expect("the folder is writable");
     }
 }
 
@@ -147,7 +147,7 @@ fn byte_order_mark_is_ignored() {
         );
     }
     // Lines and columns match those in an editor.
-    fs::write(path.join("broken.json"), "\u{feff}{ \"name\": \"t\", \"grups\": [] }").expect("the folder is ours");
+    fs::write(path.join("broken.json"), "\u{feff}{ \"name\": \"t\", \"grups\": [] }").expect("the folder is writable");
     let error = fail_in(path, 1, &["validate", "broken.json"]);
     assert!(error.starts_with("broken.json:1:16 (/grups)"), "{error}");
 }
@@ -156,7 +156,7 @@ fn byte_order_mark_is_ignored() {
 fn every_file_is_judged_independently() {
     let folder = everything();
     let path = folder.path();
-    fs::write(path.join("latin.json"), b"{ \"name\": \"caf\xe9\" }").expect("the folder is ours");
+    fs::write(path.join("latin.json"), b"{ \"name\": \"caf\xe9\" }").expect("the folder is writable");
     let files = ["task.json", "missing.json", "latin.json", "matrix.json", "world.json"];
     let judged = output(&mut driftworld_in(path, &[&["validate"], &files[..]].concat()));
     let (stdout, error) = (
@@ -173,7 +173,7 @@ fn every_file_is_judged_independently() {
         path,
         &[&["validate", "--json"], &files[..]].concat(),
     ));
-    let verdicts: serde_json::Value = serde_json::from_slice(&judged.stdout).expect("JSON");
+    let verdicts: serde_json::Value = serde_json::from_slice(&judged.stdout).expect("it is JSON");
     let valid: Vec<bool> = verdicts
         .as_array()
         .into_iter()

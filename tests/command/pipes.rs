@@ -28,19 +28,19 @@ fn pipe_reader_gets_the_first_world_before_the_last_is_drawn() {
         .expect("the command starts");
     let mut reader = BufReader::new(fs::File::open(folder.path().join("pipe")).expect("the command writes it"));
     let mut line = String::new();
-    reader.read_line(&mut line).expect("a world comes");
+    reader.read_line(&mut line).expect("a world arrives");
     assert_eq!(line, first);
     assert!(
-        child.try_wait().expect("it can be asked").is_none(),
+        child.try_wait().expect("it has a status").is_none(),
         "it is still drawing"
     );
     // The reader has gone, which is reported.
     drop(reader);
-    let ended = child.wait_with_output().expect("it ends");
+    let ended = child.wait_with_output().expect("the command ends");
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();
     assert_eq!(ended.status.code(), Some(1), "{error}");
     assert!(error.contains("pipe: cannot be written: Broken pipe"), "{error}");
-    assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 1);
+    assert_eq!(fs::read_dir(folder.path()).expect("it exists").count(), 1);
 }
 
 #[test]
@@ -63,8 +63,8 @@ fn every_format_works_in_a_pipe() {
             let pipe = path.join(&pipe);
             std::thread::spawn(move || {
                 let mut bytes = Vec::new();
-                let mut file = fs::File::open(pipe).expect("somebody writes it");
-                file.read_to_end(&mut bytes).expect("it ends");
+                let mut file = fs::File::open(pipe).expect("the command writes to the pipe");
+                file.read_to_end(&mut bytes).expect("the command ends");
                 bytes
             })
         };
@@ -97,7 +97,7 @@ fn no_folder_for_temporary_files_is_needed() {
     assert_eq!(through("/dev/fd/3", "3>&1"), expected);
     assert_eq!(through("/dev/stdout", "| cat"), expected);
     // A file opened by another process is appended to, and stays the same file.
-    fs::write(path.join("open"), "before\n").expect("the folder is ours");
+    fs::write(path.join("open"), "before\n").expect("the folder is writable");
     for redirected in [
         "/dev/stdout >>open",
         "/dev/fd/1 >>open",
@@ -106,7 +106,7 @@ fn no_folder_for_temporary_files_is_needed() {
     ] {
         assert_eq!(through(redirected, ""), "");
     }
-    let found = fs::read_to_string(path.join("open")).expect("it is there");
+    let found = fs::read_to_string(path.join("open")).expect("it exists");
     assert_eq!(found, format!("before\n{}", expected.repeat(4)));
-    assert_eq!(fs::read_dir(path).expect("it is there").count(), 1, "in {}", text(path));
+    assert_eq!(fs::read_dir(path).expect("it exists").count(), 1, "in {}", text(path));
 }

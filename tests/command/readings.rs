@@ -117,7 +117,7 @@ proptest! {
             prop_assert!(!is_alone, "{name}: {cells}");
             let null = &row["null_band"];
             if ["good", "bad", "mixed"].contains(&row["reading"].as_str().unwrap_or_default()) {
-                prop_assert!(null["p"].as_f64().expect("a number") <= 0.05, "{row}");
+                prop_assert!(null["p"].as_f64().expect("it is a number") <= 0.05, "{row}");
             }
         }
     }
@@ -132,14 +132,14 @@ proptest! {
         let arguments = [&["metrics", "-R", "runs"][..], &options].concat();
         let table = of_table(&wide(folder.path(), &arguments));
         let json = parsed(&succeed_in(folder.path(), &[&arguments[..], &["--json"]].concat()));
-        let rows = json["repeats"].as_array().expect("a list");
+        let rows = json["repeats"].as_array().expect("it is a list");
         let said: Vec<_> = rows
             .iter()
             .map(|row| (row["name"].as_str().unwrap_or_default().to_owned(), word(row)))
             .collect();
         prop_assert_eq!(&table, &said);
         let page = wide(folder.path(), &[&["report", "runs", "-o", "-"][..], &options].concat());
-        let part = page.split("Metrics over all lifetimes").nth(1).expect("a table").split("</table>").next();
+        let part = page.split("Metrics over all lifetimes").nth(1).expect("there is such a table").split("</table>").next();
         let words: Vec<_> = said.into_iter().map(|(_, word)| word).filter(|word| !word.is_empty()).collect();
         prop_assert_eq!(pills(part.unwrap_or_default()), words);
     }

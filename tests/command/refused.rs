@@ -15,7 +15,7 @@ pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
   "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
     "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
 
-/// Refused commands with their messages. To add a command, add its line `$ driftworld …` and accept what is printed.
+/// Refused commands with their messages. To add a command, add its line `$ driftworld …` and accept the new snapshot.
 const REFUSED: &str =
     include_str!("snapshots/all__command__refused__every_refusal_has_its_exit_code_and_its_words.snap");
 
@@ -44,7 +44,7 @@ fn every_refusal_has_its_exit_code_and_its_words() {
     for log in ["log", "other"] {
         succeed_in(path, &format!("run scenario.json --agent still -o {log}"));
     }
-    std::fs::create_dir(path.join("empty")).expect("the folder is ours");
+    std::fs::create_dir(path.join("empty")).expect("the folder is writable");
     let before = files_below(path);
     let mut said = String::new();
     let lines = REFUSED.lines().filter_map(|line| line.strip_prefix("$ driftworld "));
@@ -62,8 +62,8 @@ fn every_refusal_has_its_exit_code_and_its_words() {
             "$ driftworld {line}\n{error}exit code {}\n\n",
             code.unwrap_or_default()
         )
-        .expect("texts grow");
+        .expect("writing to a String does not fail");
     }
     insta::assert_snapshot!(said);
-    assert!(files_below(path) == before, "what is refused writes nothing");
+    assert!(files_below(path) == before, "refused commands write nothing");
 }

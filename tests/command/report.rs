@@ -32,14 +32,14 @@ fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
     let page = read(folder.path().join("out/page.html"));
     assert!(
         page.contains("as measured by parameters from the scenario in the log"),
-        "where the distances come from"
+        "the page names the source of the distances"
     );
     let distance = json_in(folder.path(), "distance find_objects#blue find_objects#red --json");
-    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("a total"));
+    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("it is a number"));
     assert_eq!(
         page.matches(&label).count(),
         4,
-        "{label} twice, on wide and on narrow paper"
+        "{label} twice in each of the wide and the narrow figure"
     );
     for name in ["timeline", "learning", "evaluation", "raw"] {
         let svg = read(folder.path().join(format!("figures/log_{name}.svg")));
@@ -109,7 +109,7 @@ fn tasks_without_their_variants_have_no_distances() {
     succeed_in(folder.path(), "report log -r agnostic");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("scored by whole tasks (variant mode agnostic), and distances are between variants"));
-    assert!(!page.contains("0.00\n</text>"), "no distance is made up");
+    assert!(!page.contains("0.00\n</text>"), "no distance is invented");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn drift_is_measured_at_both_ends() {
     succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
     let distance = json_in(folder.path(), "distance find_objects#red find_objects#blue --json");
-    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("a total"));
+    let label = format!("{:.2}\n</text>", distance["total"].as_f64().expect("it is a number"));
     assert_eq!(
         page.matches("0.00\n</text>").count(),
         2,
@@ -170,7 +170,7 @@ fn several_lifetimes_have_intervals_and_steps_on_request() {
         assert!(page.contains(part), "{part}");
     }
     assert_eq!(page.matches("<figure>").count(), 4, "two figures of each");
-    assert_eq!(page.matches("<figure class=\"world\">").count(), 2, "the worlds once");
+    assert_eq!(page.matches("<figure class=\"world\">").count(), 2, "no world twice");
     assert!(page.contains("ran the same scenario as one above"));
 }
 
@@ -204,7 +204,7 @@ fn scenario_without_learning_gets_its_own_reason_for_missing_pictures() {
 fn log_warnings_are_printed_and_on_the_page() {
     let folder = scratch();
     run_lifetime(folder.path());
-    fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it is there");
+    fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it exists");
     let done = output(&mut driftworld_in(folder.path(), "report log"));
     assert!(String::from_utf8_lossy(&done.stderr).contains("warning: log: "));
     let page = read(folder.path().join("report.html"));
@@ -242,7 +242,7 @@ fn files_named_in_a_log_are_not_opened() {
     let blocks = [regime("red"), regime("blue")];
     let scenario = format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", "));
     write(&path.join("scenario.json"), &scenario);
-    std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
+    std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("it is writable");
     succeed_in(path, "run scenario.json --agent random --output log");
     // Not even the file that does define the task is opened.
     succeed_in(path, "report log");
@@ -255,8 +255,8 @@ fn files_named_in_a_log_are_not_opened() {
     succeed_in(path, "report log --task mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     // From another folder, the file's name identifies the task.
-    std::fs::create_dir(path.join("tasks")).expect("the folder is ours");
-    std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is ours");
+    std::fs::create_dir(path.join("tasks")).expect("the folder is writable");
+    std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is writable");
     succeed_in(path, "report log --task tasks/mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     let info = path.join("log/scenario_info.json");
@@ -266,7 +266,7 @@ fn files_named_in_a_log_are_not_opened() {
         let text = read(&info).replace("mine.json", named);
         write(&path.join("other/scenario_info.json"), &text);
         let file = "logger_info.json";
-        fs::copy(path.join("log").join(file), path.join("other").join(file)).expect("the folder is ours");
+        fs::copy(path.join("log").join(file), path.join("other").join(file)).expect("the folder is writable");
         let copied = std::process::Command::new("cp")
             .arg("-r")
             .arg(path.join("log/worker-default"))

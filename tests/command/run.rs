@@ -38,7 +38,7 @@ fn start(arguments: &[&str]) -> Child {
     command.spawn().expect("the command was built by cargo and starts")
 }
 
-/// Number of whole rows in a log that is being written, or does not exist yet.
+/// Number of complete rows in a log that is being written, or does not exist yet.
 #[cfg(unix)]
 fn num_whole_rows(log: &Path) -> usize {
     let table = log.join("worker-default/0-test/data-log.tsv");
@@ -50,8 +50,8 @@ fn num_whole_rows(log: &Path) -> usize {
 #[cfg(unix)]
 fn stop_with_signal(arguments: &[&str], log: &Path, signal: &str) -> Option<String> {
     let mut child = start(arguments);
-    // Interrupted experiences leave no row: waits for a whole one.
-    while num_whole_rows(log) == 0 && child.try_wait().expect("the child can be asked").is_none() {
+    // Interrupted experiences leave no row, so wait for a complete one.
+    while num_whole_rows(log) == 0 && child.try_wait().expect("it has a status").is_none() {
         std::thread::yield_now();
     }
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
@@ -69,7 +69,7 @@ fn stop_with_signal(arguments: &[&str], log: &Path, signal: &str) -> Option<Stri
 
 #[cfg(unix)]
 #[test]
-fn stopped_run_finishes_its_row_and_says_how_to_continue() {
+fn stopped_run_keeps_complete_rows_and_says_how_to_continue() {
     let folder = scratch();
     let scenario = longer_scenario(folder.path(), 1000);
     let whole = folder.path().join("whole");
@@ -78,16 +78,16 @@ fn stopped_run_finishes_its_row_and_says_how_to_continue() {
     for signal in ["-INT", "-TERM"] {
         let log = folder.path().join(signal);
         let arguments = [&all[..], &["--output", text(&log)]].concat();
-        // The run may finish before the signal arrives: then it is repeated.
+        // If the run finishes before the signal arrives, try again.
         let error = (0..10).find_map(|_| stop_with_signal(&arguments, &log, signal));
-        let error = error.expect("a signal reaches a run under way");
+        let error = error.expect("a signal reaches the run before it finishes");
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
         let rows = num_rows(&log);
         assert!(
             rows > 0 && error.contains(&format!("holds {rows} of 36 experiences, all complete")),
             "{error}"
         );
-        // Also if nothing is left to do.
+        // The second time, nothing is left to do.
         for _ in 0..2 {
             assert_eq!(succeed(&[&arguments[..], &["--resume"]].concat()), stdout, "{signal}");
             assert_eq!(files(&log), files(&whole), "{signal}");
@@ -146,7 +146,7 @@ fn task_changed_between_runs_is_detected() {
 }
 
 #[test]
-fn task_with_the_same_first_world_is_detected_too() {
+fn changed_task_with_the_same_first_world_is_detected() {
     let folder = scratch();
     let task = folder.path().join("lamps.json");
     let spec = r#"{ "name": "lamps", "world": { "max_steps": 5 }, "parameters": {

@@ -32,7 +32,7 @@ pub(crate) fn timeless(table: &str) -> String {
     let column = header
         .iter()
         .position(|name| *name == "timestamp")
-        .expect("rows say when");
+        .expect("the table has timestamps");
     let row = |line: &str| {
         let mut cells: Vec<&str> = line.split('\t').collect();
         cells.remove(column);

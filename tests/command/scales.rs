@@ -44,20 +44,20 @@ fn metrics_use_the_measured_scales() {
     );
     let penalty = shown.lines().find(|line| line.contains("penalty")).expect("a row");
     assert!(penalty.ends_with("nothing to learn"), "{shown}");
-    let file = std::fs::read_to_string(folder.path().join("scales.json")).expect("a file");
+    let file = std::fs::read_to_string(folder.path().join("scales.json")).expect("the file exists");
     let red = &parsed(&file)["scales"]["findobjects_red"];
     let (floor, ceiling) = (
-        red["floor"].as_f64().expect("a floor"),
-        red["ceiling"].as_f64().expect("a ceiling"),
+        red["floor"].as_f64().expect("it is a number"),
+        red["ceiling"].as_f64().expect("it is a number"),
     );
 
-    // Half-way from floor to ceiling, averaged over the worlds' 0 to 5.
+    // Halfway from floor to ceiling on average, as the worlds add 0 to 5.
     live(&folder.path().join("life"), f64::midpoint(floor, ceiling) - 2.5);
     let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
     let red = shown
         .lines()
         .find(|line| line.starts_with("findobjects_red"))
-        .expect("a row");
+        .expect("there is such a row");
     assert!(red.contains("50% ± "), "{shown}");
     shown.says("from its floor to its ceiling, to 1..101: findobjects_red.");
     shown.says("scaled by this lifetime's own range: findobjects_penalty.");
@@ -67,7 +67,7 @@ fn metrics_use_the_measured_scales() {
     ));
     let reached = &json["reached"]["findobjects_red"];
     assert_eq!(reached["scaled_by"], "anchors", "{json}");
-    let score = reached["evaluations"][1]["score"].as_f64().expect("a score");
+    let score = reached["evaluations"][1]["score"].as_f64().expect("it is a number");
     assert!((score - 0.5).abs() < 1e-9, "{json}");
     assert_eq!(json["reached"]["findobjects_penalty"]["scaled_by"], "own", "{json}");
     let curve = &json["curves"]["findobjects_red"];
@@ -82,7 +82,7 @@ fn metrics_use_the_measured_scales() {
 }
 
 #[test]
-fn power_reports_what_lifetimes_can_show() {
+fn power_reports_the_detectable_effect_and_the_lifetimes_needed() {
     let folder = scratch();
     for (number, level) in [20.0, 60.0, 35.0, 50.0].into_iter().enumerate() {
         live(&folder.path().join(format!("runs/{number}")), level);
@@ -95,19 +95,19 @@ fn power_reports_what_lifetimes_can_show() {
         folder.path(),
         &["metrics", "-R", "runs", "-n", "none", "--power", "10", "--json"],
     ));
-    let rows = json["power"].as_array().expect("a list");
+    let rows = json["power"].as_array().expect("it is a list");
     let row = rows
         .iter()
         .find(|row| row["name"] == "avg_eval_perf")
-        .expect("a metric that varies");
+        .expect("the metric varies and is listed");
     // Of the evaluations of red, two in three vary; of all tasks' means, half of that.
-    let deviation = row["deviations"][0].as_f64().expect("a deviation");
+    let deviation = row["deviations"][0].as_f64().expect("it is a number");
     assert!((deviation - 17.5 / 3.0).abs() < 0.5, "{row}");
     assert_eq!(row["lifetimes"], serde_json::json!([4, 4]), "{row}");
-    let power = row["power"].as_f64().expect("a chance");
+    let power = row["power"].as_f64().expect("it is a number");
     assert!(0.05 < power && power < 0.8, "{row}");
-    assert!(row["lifetimes_needed"].as_u64().expect("a number") > 4, "{row}");
-    assert!(row["smallest_effect"].as_f64().expect("an effect") > 10.0, "{row}");
+    assert!(row["lifetimes_needed"].as_u64().expect("it is a number") > 4, "{row}");
+    assert!(row["smallest_effect"].as_f64().expect("it is a number") > 10.0, "{row}");
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn lookalike_tasks_have_a_separate_ceiling() {
         folder.path(),
         &["metrics", "life", "--scales", "scales.json", "--json"],
     ));
-    let file = parsed(&std::fs::read_to_string(folder.path().join("scales.json")).expect("a file"));
+    let file = parsed(&std::fs::read_to_string(folder.path().join("scales.json")).expect("the file exists"));
     let set = &file["unlabelled"][0];
     for task in tasks {
         let shown = &json["reached"][task]["unlabelled"];
@@ -149,7 +149,7 @@ fn lookalike_tasks_have_a_separate_ceiling() {
         assert_eq!(shown["finds_out"], set["finds_out"]["levels"][task]["mean"], "{json}");
         assert_eq!(shown["among"], serde_json::json!(tasks), "{json}");
     }
-    // Alone, a task looks like no other of the lifetime.
+    // A task that is alone in its lifetime has no lookalike there.
     live("alone", &tasks[..1]);
     let json = parsed(&succeed_in(
         folder.path(),
@@ -164,13 +164,13 @@ fn scales_that_fit_no_task_are_reported() {
     live(&folder.path().join("life"), 20.0);
     let file = folder.path().join("scales.json");
     let warned = |text: &str| {
-        std::fs::write(&file, text).expect("a file");
+        std::fs::write(&file, text).expect("the folder is writable");
         let run = output(&mut driftworld_in(
             folder.path(),
             &["metrics", "life", "--scales", "scales.json"],
         ));
         assert!(run.status.success());
-        String::from_utf8(run.stderr).expect("text")
+        String::from_utf8(run.stderr).expect("it is text")
     };
     let stderr = warned(r#"{"scales": {"findobject_red": {"floor": 0, "ceiling": 10}}}"#);
     assert!(

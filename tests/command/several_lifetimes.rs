@@ -45,7 +45,7 @@ fn good_needs_several_lifetimes_outside_the_null_band() {
             .lines()
             .find(|line| line.starts_with("perf_maintenance_mrlep"))
             .map(str::to_owned);
-        (row.expect("a row"), shown)
+        (row.expect("there is such a row"), shown)
     };
     let (row, shown) = reading("forgets");
     assert!(row.contains("  forgets  "), "{shown}");
@@ -55,16 +55,16 @@ fn good_needs_several_lifetimes_outside_the_null_band() {
     let learned = shown
         .lines()
         .find(|line| line.starts_with("avg_train_perf"))
-        .expect("a row");
+        .expect("there is such a row");
     assert!(learned.contains("no null"), "{shown}");
     let json = parsed(&succeed_in(folder.path(), &["metrics", "-R", "forgets", "--json"]));
-    let rows = json["repeats"].as_array().expect("a list");
+    let rows = json["repeats"].as_array().expect("it is a list");
     let row = rows
         .iter()
         .find(|row| row["name"] == "perf_maintenance_mrlep")
-        .expect("a metric");
+        .expect("the metric is listed");
     let (null, number) = (&row["null"], |value: &serde_json::Value| {
-        value.as_f64().expect("a number")
+        value.as_f64().expect("it is a number")
     });
     assert!(
         number(&null["value"]) < number(&null["low"]) && number(&null["p"]) < 0.05,
@@ -82,7 +82,7 @@ fn never_learned_tasks_are_listed_and_experts_share_their_unit() {
     for number in 0..2 {
         live(&folder.path().join(format!("runs/{number}")), 50.0);
     }
-    std::fs::write(folder.path().join("scales.json"), SCALES).expect("a file");
+    std::fs::write(folder.path().join("scales.json"), SCALES).expect("the folder is writable");
     for more in [&["-R", "runs"][..], &["runs/0"]] {
         let shown = succeed_in(
             folder.path(),
@@ -90,10 +90,10 @@ fn never_learned_tasks_are_listed_and_experts_share_their_unit() {
         );
         let row = |task: &str| shown.lines().find(|line| line.starts_with(task)).map(str::to_owned);
         assert!(row("find_held").is_some_and(|row| row.contains("10%")), "{shown}");
-        let red = row("find_red").expect("a row");
+        let red = row("find_red").expect("there is such a row");
         assert!(
             red.contains("82%") && !red.contains("100%"),
-            "no ceiling beside its own share: {shown}"
+            "the row has a share of the ceiling and no separate ceiling: {shown}"
         );
     }
 }
@@ -117,7 +117,7 @@ fn sides_of_a_comparison_are_one_agent_each_and_share_no_log() {
     for (number, agent) in ["ewc", "clear"].into_iter().enumerate() {
         let mine = folder.path().join(format!("mine/{number}"));
         live(&mine, 50.0);
-        std::fs::write(mine.join("scenario_info.json"), format!(r#"{{"agent": "{agent}"}}"#)).expect("a folder");
+        std::fs::write(mine.join("scenario_info.json"), format!(r#"{{"agent": "{agent}"}}"#)).expect("it is writable");
         live(&folder.path().join(format!("theirs/{number}")), 30.0);
     }
     let shown = fail_in(folder.path(), 0, &["metrics", "-R", "mine", "--against", "theirs"]);
@@ -153,10 +153,10 @@ fn constant_metric_is_listed_with_power() {
         live(&folder.path().join(format!("runs/{number}")), 50.0);
     }
     let shown = succeed_in(folder.path(), &["metrics", "-R", "runs", "--power", "5"]);
-    let power = shown.split("power for 5").nth(1).expect("a table");
+    let power = shown.split("power for 5").nth(1).expect("there is such a table");
     let row = power
         .lines()
         .find(|line| line.starts_with("avg_eval_perf"))
-        .expect("a row");
+        .expect("there is such a row");
     assert!(row.contains("0.000") && row.contains("does not vary"), "{shown}");
 }

@@ -17,8 +17,8 @@ fn start(folder: &Path, arguments: &[&str]) -> Child {
 /// Waits until a condition holds for a running command.
 fn wait_until(child: &mut Child, condition: impl Fn(&Child) -> bool) {
     while !condition(child) {
-        let ended = child.try_wait().expect("it can be asked");
-        assert!(ended.is_none(), "it is over before: {ended:?}");
+        let ended = child.try_wait().expect("it has a status");
+        assert!(ended.is_none(), "it ended too early: {ended:?}");
         std::thread::yield_now();
     }
 }
@@ -33,7 +33,7 @@ fn handles_signals(child: &Child) -> bool {
 }
 
 fn ended(child: Child) -> (Output, String) {
-    let output = child.wait_with_output().expect("it ends");
+    let output = child.wait_with_output().expect("the command ends");
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     (output, error)
 }
@@ -66,7 +66,7 @@ fn command_with_a_blocked_reader_ends_with_a_message() {
             &["sample", "find_objects", "--count", "100000000", "--jsonl", "-o", "-"],
         );
         let mut unread = child.stdout.take().expect("it is a pipe");
-        std::io::Read::read_exact(&mut unread, &mut [0; 1]).expect("a world comes");
+        std::io::Read::read_exact(&mut unread, &mut [0; 1]).expect("a world arrives");
         signal(&child, name);
         let (output, error) = ended(child);
         drop(unread);

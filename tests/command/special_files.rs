@@ -110,7 +110,7 @@ fn every_subcommand_that_reads_files_is_tested() {
 #[test]
 fn endless_device_is_not_read() {
     everywhere(0, "a device", |path| {
-        symlink("/dev/zero", path).expect("a link can be made");
+        symlink("/dev/zero", path).expect("a link can be created");
     });
 }
 
@@ -125,7 +125,7 @@ fn pipe_without_a_writer_is_not_waited_for() {
 #[test]
 fn socket_is_not_read() {
     everywhere(2, "a socket", |path| {
-        // It remains when nobody listens any more.
+        // The socket file remains after its listener is closed.
         drop(UnixListener::bind(path).expect("a socket can be bound"));
     });
 }
@@ -133,12 +133,12 @@ fn socket_is_not_read() {
 #[test]
 fn folder_is_not_read_as_a_file() {
     everywhere(3, "folder", |path| {
-        fs::create_dir(path).expect("a folder can be made");
+        fs::create_dir(path).expect("a folder can be created");
     });
 }
 
-/// Runs every command line with such a file in place of its own; in the quick tier every fourth, different ones for each
-/// `kind`.
+/// Runs every command line with such a file in place of its own; in the quick tier, every fourth command line, a different
+/// selection for each `kind`.
 fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     let scratch = scratch();
     let folder = scratch.path();
@@ -170,8 +170,8 @@ fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
 fn prepare(folder: &Path) {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
-        fs::create_dir_all(path.parent().expect("it lies in a folder")).expect("the folder is ours");
-        fs::write(path, text).expect("the folder is ours");
+        fs::create_dir_all(path.parent().expect("it lies in a folder")).expect("the folder is writable");
+        fs::write(path, text).expect("the folder is writable");
     };
     let scenario = |regime: &str| {
         format!(
@@ -196,7 +196,7 @@ fn prepare(folder: &Path) {
     );
     write("info_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
     write("rows_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
-    fs::create_dir_all(folder.join("rows_log/w/0-train")).expect("the folder is ours");
+    fs::create_dir_all(folder.join("rows_log/w/0-train")).expect("the folder is writable");
     succeed_in(folder, &["schema", "-o", "schemas"]);
     fs::remove_file(folder.join("schemas/world.schema.json")).expect("it was written");
     write(
@@ -222,16 +222,16 @@ fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(File::create(&messages).expect("the folder is ours"))
+        .stderr(File::create(&messages).expect("the folder is writable"))
         .spawn()
         .expect("every unix has sh");
     let start = Instant::now();
     let status = loop {
-        if let Some(status) = child.try_wait().expect("the process is ours") {
+        if let Some(status) = child.try_wait().expect("the process is a child of the test") {
             break status;
         }
         if start.elapsed() > Duration::from_secs(10) {
-            child.kill().expect("the process is ours");
+            child.kill().expect("the process is a child of the test");
             panic!("{line:?} did not end");
         }
         std::thread::sleep(Duration::from_millis(5));
@@ -244,12 +244,12 @@ fn unrecognised_file_does_not_suppress_other_verdicts() {
     let scratch = scratch();
     let folder = scratch.path();
     let all = folder.join("all");
-    fs::create_dir(&all).expect("the folder is ours");
-    fs::write(all.join("d_task.json"), read_task()).expect("the folder is ours");
-    symlink("/dev/zero", all.join("a.json")).expect("a link can be made");
-    symlink("nowhere", all.join("b.json")).expect("a link can be made");
-    fs::write(all.join("c.json"), b"{\"name\": \"\xff\"}").expect("the folder is ours");
-    fs::create_dir(all.join("e.json")).expect("the folder is ours");
+    fs::create_dir(&all).expect("the folder is writable");
+    fs::write(all.join("d_task.json"), read_task()).expect("the folder is writable");
+    symlink("/dev/zero", all.join("a.json")).expect("a link can be created");
+    symlink("nowhere", all.join("b.json")).expect("a link can be created");
+    fs::write(all.join("c.json"), b"{\"name\": \"\xff\"}").expect("the folder is writable");
+    fs::create_dir(all.join("e.json")).expect("the folder is writable");
     let status = Command::new("mkfifo").arg(all.join("f.json")).status();
     assert!(status.expect("every unix has mkfifo").success());
     let (code, _) = ended(folder, &["validate", "all"]);

@@ -10,13 +10,13 @@ use super::terminal::{driftworld_in, output, scratch};
 /// Creates a folder that looks like a page, and beside it a file that must not be served.
 fn page(root: &Path) -> std::path::PathBuf {
     let folder = root.join("page");
-    std::fs::create_dir_all(folder.join("networks")).expect("the folder is ours");
+    std::fs::create_dir_all(folder.join("networks")).expect("the folder is writable");
     for (name, text) in [
         ("index.html", "<p>page</p>"),
         ("networks/index.json", "[]"),
         ("../secret.txt", "secret"),
     ] {
-        std::fs::write(folder.join(name), text).expect("the folder is ours");
+        std::fs::write(folder.join(name), text).expect("the folder is writable");
     }
     folder
 }
@@ -104,7 +104,7 @@ fn task_from_a_file_is_served_beside_the_page() {
     let folder = scratch();
     page(folder.path());
     let text = "{ \"name\": \"mine\", \"world\": {} }";
-    std::fs::write(folder.path().join("mine.json"), text).expect("the folder is ours");
+    std::fs::write(folder.path().join("mine.json"), text).expect("the folder is writable");
     let (_serving, address) = served(folder.path(), &["mine.json"]);
     let (host, token, fragment) = parts(&address);
     assert_eq!(fragment, "/author/draft?file=task.json");
@@ -134,7 +134,7 @@ fn error_for_a_missing_page_or_task_says_what_to_do() {
         String::from_utf8_lossy(&done.stderr).into_owned()
     };
     assert!(error(&[]).contains("cannot be read"), "{}", error(&[]));
-    std::fs::create_dir(folder.path().join("page")).expect("the folder is ours");
+    std::fs::create_dir(folder.path().join("page")).expect("the folder is writable");
     assert!(error(&[]).contains("cargo xtask studio"), "{}", error(&[]));
     page(folder.path());
     assert!(

@@ -22,7 +22,7 @@ const ORDERS: [[usize; 6]; 6] = [
     [1, 5, 3, 0, 2, 4],
 ];
 
-/// The effect of learning one variant on another: a share of what it still lacks.
+/// The effect of learning one variant on another, as a share of the other's remaining room for improvement.
 type Kernel = fn(usize, usize) -> f64;
 
 /// The nearer the variants, the larger the effect.
@@ -58,7 +58,7 @@ struct Life {
 impl Life {
     fn experience(&mut self, kind: BlockType, variant: usize) {
         let reward = 10.0 * self.skill[variant] + 0.1 * noise(self.experience);
-        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + self.experience as i64).expect("a day in 2020");
+        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + self.experience as i64).expect("a valid time");
         let record = Record::new(self.block, self.experience, kind, format!("line_v{variant}"), when);
         self.log
             .write(&record.with_metric("reward", reward))
@@ -86,7 +86,7 @@ impl Life {
 
 /// Learns the variants in this order, with evaluations before and after each unless disabled.
 fn simulate(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
-    let info = LoggerInfo::new(["reward"]).expect("a column");
+    let info = LoggerInfo::new(["reward"]).expect("the columns are valid");
     let log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
     let mut life = Life {
         skill: [0.1; 6],
@@ -181,7 +181,7 @@ fn report_explains_itself_and_draws_a_picture() {
             folder.path().join("transfer.png"),
             Path::new(&keep).join("transfer.png"),
         )
-        .expect("a folder");
+        .expect("the folder is writable");
     }
     let one = simulated(&[&ORDERS[0]], by_distance, true);
     assert!(reported(one.path(), &[]).contains("learned in the same order"));
@@ -208,7 +208,7 @@ fn impossible_reports_say_what_is_needed() {
     assert!(error.contains("\"joy\"") && error.contains("reward"), "{error}");
     std::fs::write(folder.path().join("distances.csv"), "nothing").expect("the folder can be written");
     assert!(refused(folder.path(), 1, &[]).contains("distances.csv: matrix, line 1: found \"nothing\""));
-    std::fs::remove_dir_all(folder.path().join("logs")).expect("it is there");
+    std::fs::remove_dir_all(folder.path().join("logs")).expect("it exists");
     std::fs::create_dir(folder.path().join("logs")).expect("it is gone");
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
     assert!(refused(folder.path(), 1, &[]).contains("logs: found no log"));

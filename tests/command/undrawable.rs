@@ -65,10 +65,10 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     error.says("x <= 4 or x >= 6");
     assert!(
         !folder.path().join("s.json").exists(),
-        "what could not be run is not written"
+        "a scenario that cannot be run is not written"
     );
     let way = |number: &str| error.contains(&format!("at progress {number}"));
-    assert!(way("0.425"), "the first that is forbidden is named: {error}");
+    assert!(way("0.425"), "the error names the first forbidden value: {error}");
 
     succeed_in(folder.path(), &format!("{design} --worlds 0"));
     let error = fail_in(folder.path(), 1, "validate s.json --worlds 2");
@@ -97,7 +97,7 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
 }
 
 #[test]
-fn undrawable_first_world_starts_no_log_unless_skipped() {
+fn undrawable_first_world_is_skipped_on_request() {
     let folder = scratch();
     quarry(folder.path());
     let design = "curriculum quarry.json#full --worlds 0 --learn 12 --eval-episodes 5 -o s.json --seed 1";
@@ -226,7 +226,7 @@ fn unknown_model_is_refused_by_every_command_that_trains() {
     );
 }
 
-/// The classes of a library are known if it is named.
+/// The classes of a library are known only with `--assets`.
 #[cfg(feature = "gltf")]
 #[test]
 fn classes_of_a_named_library_are_known() {
@@ -241,7 +241,7 @@ fn classes_of_a_named_library_are_known() {
 }
 
 #[test]
-fn curriculum_starts_with_the_first_named() {
+fn curriculum_starts_with_the_first_named_variant() {
     let folder = scratch();
     let first = |names: &str| {
         let scenario = json_in(folder.path(), &format!("curriculum {names} --worlds 0"));
@@ -271,7 +271,7 @@ fn probe_takes_the_named_variants_or_says_why_not() {
         "curriculum find_objects#red dusk --probe observation -o s.json",
     );
     assert!(shown.contains("distances from find_objects#red"), "{shown}");
-    assert!(!shown.contains("find_objects#blue"), "only what was named: {shown}");
+    assert!(!shown.contains("find_objects#blue"), "only the named variants: {shown}");
     let error = fail_in(folder.path(), 1, "curriculum find_objects#red dusk --probe reward");
     error.says("find_objects#red and find_objects#dusk, which differ in observation");
 }

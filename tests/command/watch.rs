@@ -94,7 +94,7 @@ fn killed_recorded_run_resumes_and_keeps_every_byte() {
         fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
         // Without `--record`: a log that was started with it keeps recording.
         succeed(&[&all[..], &["--resume", "--output", text(&log)]].concat());
-        assert_eq!(files(&log), expected, "{rows} rows, {cut} bytes less");
+        assert_eq!(files(&log), expected, "{rows} rows, cut by {cut} bytes");
     }
     // The next block has just started.
     let log = folder.path().join("begun");
@@ -248,7 +248,7 @@ fn each_view_and_modality_gives_a_different_picture() {
                     "{modality} {ending}: another picture the second time"
                 );
                 for (other, theirs) in &drawn {
-                    assert!(&bytes != theirs, "{ending}: {view} {modality} is as {other}");
+                    assert!(&bytes != theirs, "{ending}: {view} {modality} equals {other}");
                 }
                 drawn.push((format!("{view} {modality}"), bytes));
             }
@@ -342,7 +342,7 @@ fn film_of_a_world_without_a_limit_ends() {
         let line = format!("film endless.json --agent still --size 32 --json -o sheet.png {more}");
         let done = output(&mut driftworld_in(folder.path(), &line));
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        let json: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).expect("it is JSON");
         let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
         (json["steps"].as_u64(), stderr)
     };

@@ -20,7 +20,7 @@ fn lifetime(folder: &std::path::Path) {
         .split_once(",\n    \"many\"")
         .expect("the paper's variants come first");
     let mine = format!("{}}} }}", four.replace("\"blue_red_green\"", "\"mine\""));
-    std::fs::write(folder.join("mine.json"), mine).expect("the folder is ours");
+    std::fs::write(folder.join("mine.json"), mine).expect("the folder is writable");
     let design = "curriculum mine.json --learn 2 --eval-episodes 2 -o scenario.json";
     succeed_in(folder, &design.split(' ').collect::<Vec<_>>());
     let run = "run scenario.json --agent random -o log";
@@ -52,7 +52,7 @@ fn tables_fit_80_and_120_columns_without_broken_words() {
     for (number, (name, arguments)) in TABLES.into_iter().enumerate() {
         let words = |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
         let whole = words(&at(10_000, folder.path(), arguments));
-        // In the quick tier each table at one width.
+        // The quick tier checks each table at one width.
         let widths = [80, 120].into_iter().skip(quick_or_full(number % 2, 0));
         for columns in widths.take(quick_or_full(1, 2)) {
             let shown = at(columns, folder.path(), arguments);
@@ -70,7 +70,7 @@ fn tables_fit_80_and_120_columns_without_broken_words() {
                 })
             };
             for word in words(&shown) {
-                assert!(known(&word), "{arguments} at {columns}: {word:?} is no whole word");
+                assert!(known(&word), "{arguments} at {columns}: {word:?} is not a whole word");
             }
             insta::assert_snapshot!(format!("{name}_{columns}"), shown);
         }

@@ -105,7 +105,7 @@ fn distance_depends_on_the_pair_alone() {
             for b in &all {
                 let rewritten = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
                 let [here, there] = [first.between(a, b), second.between(&rewritten(a), &rewritten(b))];
-                let (here, there) = (here.expect("of one task"), there.expect("of one task"));
+                let (here, there) = (here.expect("same task"), there.expect("same task"));
                 assert!(
                     are_close(&here, &there),
                     "{} and {}: {here:#?} and {there:#?}",
@@ -120,10 +120,10 @@ fn distance_depends_on_the_pair_alone() {
             alone["variants"] = json!({ "b": set_by(&pair[1]), "a": set_by(&pair[0]) });
             let alone = load(&alone);
             let [a, b] = ["a", "b"].map(|name| named(&alone, name));
-            let here = first.between(&pair[0], &pair[1]).expect("of one task");
+            let here = first.between(&pair[0], &pair[1]).expect("same task");
             assert_eq!(
                 numbers(&here),
-                numbers(&measure(&alone).between(&a, &b).expect("of one task"))
+                numbers(&measure(&alone).between(&a, &b).expect("same task"))
             );
         }
     }
@@ -154,8 +154,8 @@ fn equal_parameters_do_not_dilute_the_distance() {
         let pairs = || task.all_variants().into_iter().zip(other.all_variants());
         for (a, other_a) in pairs().step_by(quick_or_full(3, 1)) {
             for (b, other_b) in pairs() {
-                let here = first.between(&a, &b).expect("of one task");
-                let there = second.between(&other_a, &other_b).expect("of one task");
+                let here = first.between(&a, &b).expect("same task");
+                let there = second.between(&other_a, &other_b).expect("same task");
                 assert_eq!(numbers(&here), numbers(&there), "{} and {}", a.id(), b.id());
             }
         }
@@ -184,7 +184,7 @@ fn full_range_of_a_parameter_is_1_and_0_if_unread() {
                     variant.with("moved", [(name.clone(), value)]).ok()
                 });
                 let [Some(low), Some(high)] = moved else { continue };
-                let found = measure.between(&low, &high).expect("of one task");
+                let found = measure.between(&low, &high).expect("same task");
                 if variant.reads(name) {
                     let own = found
                         .parts

@@ -151,7 +151,7 @@ fn scale_does_not_depend_on_the_order_of_parameters() {
     );
 }
 
-/// `vary find_objects#blue --element T --distance 0.5` printed `reach 20, hold 10`, although nothing reads `reach` of objects
+/// `vary find_objects#blue --element T --distance 0.5` printed `reach 20, hold 10`, although `reach` has no effect on objects
 /// that are triggered by contact. The same was wrong with 15 of 125 results for built-in variants.
 #[test]
 fn unread_parameters_make_no_distance() {

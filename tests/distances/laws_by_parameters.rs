@@ -108,7 +108,7 @@ proptest! {
         let measure = measure(&task);
         for (name, parameter) in spec.0["parameters"].as_object().expect("it is an object") {
             let weight = parameter["compare"]["weight"].as_f64().unwrap_or(1.0);
-            let element_weight = |element: &Json| spec.0["element_weights"][element.as_str().expect("a letter")].as_f64().unwrap_or(1.0);
+            let element_weight = |element: &Json| spec.0["element_weights"][element.as_str().expect("it is a letter")].as_f64().unwrap_or(1.0);
             let element_weight = parameter["affects"].as_array().into_iter().flatten().map(element_weight).fold(0.0, f64::max);
             let [low, high] = ends(parameter).map(|end| {
                 let value = serde_json::from_value(end).ok()?;

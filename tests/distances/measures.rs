@@ -88,7 +88,7 @@ fn declared_measure_is_used_or_refused_with_suitable_ones() {
             };
             let [a, b] = [DEFAULT_VARIANT, "b"].map(|name| task.variant(name).expect("it is declared"));
             let measure = VariantMeasure::new(&task, Weights::default());
-            let found = measure.between(&a, &b).expect("they are of one task");
+            let found = measure.between(&a, &b).expect("both belong to the same task");
             let words = |text: &str| text.replace(['_', '-'], " ");
             let part = &found.parts[0];
             assert!(

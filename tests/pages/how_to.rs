@@ -53,7 +53,7 @@ fn every_answer_has_a_runnable_block() {
             .unwrap_or_else(|| panic!("{page} has no answer"));
         for section in sections.split("\n## ") {
             let question = section.lines().next().unwrap_or_default();
-            assert!(question.ends_with('?'), "{page}: {question:?} is no question");
+            assert!(question.ends_with('?'), "{page}: {question:?} is not a question");
             let runs = blocks(section)
                 .iter()
                 .any(|block| ["sh", "python", "rust"].contains(&block.language.as_str()));

@@ -24,7 +24,7 @@ fn sent(cast: &str) -> String {
     let header: serde_json::Value = serde_json::from_str(lines.next().unwrap()).unwrap();
     assert_eq!((&header["version"], &header["width"]), (&2.into(), &80.into()));
     let events: Vec<(f64, String, String)> = lines.map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert!(events.is_sorted_by(|a, b| a.0 <= b.0), "times rise");
+    assert!(events.is_sorted_by(|a, b| a.0 <= b.0), "times increase");
     events.into_iter().map(|(_, _, text)| text).collect()
 }
 

@@ -1,4 +1,4 @@
-//! Runs the commands of a page like a reader: one block after the other, in a separate folder in which `examples/` is the
+//! Runs the commands of a page as a reader would: one block after the other, in a separate folder in which `examples/` is the
 //! checkout's. A block `sh terminal=KEYS` runs on a terminal where these keys are pressed, one after each step that it shows. A
 //! block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a block `text output` is the output of
 //! the commands above it. A block `sh needs=MODULE` is skipped, together with its output, if `python3`, or the Python in
@@ -64,7 +64,7 @@ pub(crate) fn run(page: &str) {
             }
             assert!(
                 updates(),
-                "{page}:{}: found\n{printed}\nexpected\n{}\nDRIFTWORLD_UPDATE_PAGES=1 writes it anew",
+                "{page}:{}: found\n{printed}\nexpected\n{}\nDRIFTWORLD_UPDATE_PAGES=1 rewrites it",
                 block.line,
                 block.text
             );
@@ -77,7 +77,7 @@ pub(crate) fn run(page: &str) {
     }
     assert!(
         recorded.is_empty(),
-        "{page}: these are recorded, and not there: {recorded:?}"
+        "{page}: these recorded commands are not on the page: {recorded:?}"
     );
     let pictures = pictures(page, &text);
     for (picture, place) in &pictures {
@@ -175,7 +175,7 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
         assert_eq!(
             noise(&printed),
             None,
-            "{page}:{}: what people read has no noise",
+            "{page}:{}: output for people has no excess decimals",
             block.line
         );
     }

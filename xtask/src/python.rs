@@ -58,7 +58,7 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 }
 
 impl Environment {
-    /// The environment of this name, with the packages of all these lists installed. It is created anew if it does not work.
+    /// The environment of this name, with the packages of all these lists installed. It is recreated if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
         // With `--all`, the learners' environment is created while other stages run.
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -189,7 +189,7 @@ pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment>
     }
     let list = ["python/tests/requirements-learners.txt"];
     Environment::with(workspace, &interpreter, "learners", &list).inspect_err(|_| {
-        // Half an environment would only take disk space from other stages.
+        // An incomplete environment would only take disk space from other stages.
         let _ = fs::remove_dir_all(&folder);
     })
 }

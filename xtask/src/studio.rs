@@ -102,7 +102,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     })?;
     let command = workspace.target.join("debug/driftworld");
     let page = workspace.target.join("studio");
-    // The same export as the page's own documentation describes.
+    // Exports the page as its own documentation describes.
     let mut export = workspace.program(&command, &["studio", "--export"]);
     export.arg(workspace.target.join("studio-export"));
     run(export)?;

@@ -40,7 +40,7 @@ impl Agent for Restless {
     }
 }
 
-/// A world that rewards every step by its progress towards a goal `ahead`, so that all actions affect the reward.
+/// A world that rewards progress towards a goal at `ahead` in every step, so that every action affects the reward.
 pub(crate) fn hill(ahead: i32) -> World {
     let text = r#"{ "max_steps": 30,
         "objects": [{ "class": "geometric", "coordinates": [0, AHEAD], "tag": "goal" }],
@@ -159,7 +159,7 @@ fn repeated_evaluations_are_drawn_for_each_block() {
             repeats,
             blocks: Vec::new(),
         };
-        let now = Timestamp::from_unix_micros(0).expect("1970");
+        let now = Timestamp::from_unix_micros(0).expect("the epoch is a valid time");
         run_rollout(&plan, &mut recorder, &mut journal, 0, &mut || now).unwrap_or_else(|error| panic!("{error}"));
         let in_block = |(block, numbers): (u64, Vec<u64>)| -> Vec<u64> {
             numbers.into_iter().map(|number| number - 40 * block).collect()

@@ -55,7 +55,7 @@ fn learner_learns_in_order_and_is_evaluated_by_several_copies() {
     assert_eq!(
         learned,
         7 * 60,
-        "seven experiences of learning, each cut off after 60 steps"
+        "seven learning experiences, each cut off after 60 steps"
     );
 }
 
@@ -125,7 +125,7 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
     );
     seeds.sort_unstable();
     seeds.dedup();
-    // Two worlds of learning, three that are learned again in a drift to another variant, four of evaluation.
+    // Two learning worlds, three more in a drift to another variant, and four evaluation worlds.
     assert_eq!(seeds.len(), 9, "{seeds:?}");
 }
 

@@ -291,7 +291,7 @@ fn varied() -> Scenario {
         world: Some("yard.json".to_owned()),
         ..Regime::new("Task 1", "yard", 2)
     };
-    // Two experiences of 60 steps use it up.
+    // Two experiences of 60 steps use up the budget.
     let budgeted = Regime {
         steps: Some(61),
         ..drawn("blue", 9)

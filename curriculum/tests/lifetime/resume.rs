@@ -19,7 +19,7 @@ fn log_cut_at_any_byte_is_completed_identically() {
     let scenario = varied();
     let summary =
         run_scenario(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    // Files in the order of writing.
+    // Files in the order in which they are written.
     let mut files: Vec<String> = vec!["scenario_info.json".into(), "logger_info.json".into()];
     for (block, kind) in ["train", "test", "train", "test"].iter().enumerate() {
         files.push(format!("worker-default/{block}-{kind}/data-log.tsv"));
@@ -42,7 +42,7 @@ fn log_cut_at_any_byte_is_completed_identically() {
                 break;
             }
             let (torn, part) = (left < bytes.len(), &bytes[..left.min(bytes.len())]);
-            // The two info files have a different name until they are complete.
+            // The two info files have a temporary name until they are complete.
             let name = if torn && !file.contains('/') {
                 format!(".{file}.tmp")
             } else {

@@ -17,8 +17,8 @@ pub(super) trait Ground {
     /// The highest cost of a step.
     fn max_cost(&self) -> u32;
 
-    /// The cost of the step by which the flood spreads from a cell to the one at this offset, `open` on open ground; `None` if no
-    /// step leads there.
+    /// The cost of spreading from a cell to its neighbour at this offset, where a step on open ground costs `open`; `None` if
+    /// no step leads there.
     fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32>;
 }
 

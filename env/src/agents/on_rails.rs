@@ -65,7 +65,7 @@ impl OnRailsAgent {
         agent
     }
 
-    /// Whether nothing is left that is worth going to.
+    /// Whether nothing worth visiting is left.
     pub(crate) fn is_done(sim: SimRef) -> bool {
         if sim.state.has_things {
             return Planner::is_done(sim);

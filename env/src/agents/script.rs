@@ -38,7 +38,7 @@ pub(super) enum Command {
     Act { action: Action, steps: u32 },
     /// Walks to the nearest object with a name, until a condition holds.
     Go { name: String, until: Until, steps: u32 },
-    /// Acts like the agent on rails until nothing is left that is worth going to.
+    /// Acts like the agent on rails until nothing worth visiting is left.
     Tour { steps: u32 },
     /// Starts again from the first line.
     Repeat,
@@ -91,7 +91,7 @@ type Problem = (String, String);
 
 fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
-        // Names of objects are free in worlds, as in the original environment, so only unprintable ones are refused.
+        // Worlds allow any object name, as the original environment does, so only unprintable names are refused.
         if object.chars().count() > MAX_NAME_CHARS || object.contains(is_unprintable) {
             let expected = format!("the name of an object: 1 to {MAX_NAME_CHARS} characters that can be seen");
             return Err((quoted(object), expected));

@@ -23,7 +23,7 @@ const MAX_INTERACTIONS: u32 = 10;
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
 /// | `interact NAME [N]` | walks there and interacts until the object reacts |
 /// | `near NAME METRES [N]` | walks there until its centre is nearer than METRES |
-/// | `tour [N]` | acts like [`OnRailsAgent`] until nothing is left that is worth going to |
+/// | `tour [N]` | acts like [`OnRailsAgent`] until nothing worth visiting is left |
 /// | `repeat` | restarts the script; only as the last line |
 /// A walk to an absent object takes no steps. Walks work in every action space; the actions of `step` and `action` are passed
 /// to the world unchanged.

@@ -9,10 +9,10 @@ use crate::sim::{Action, SimRef};
 /// Fractions of the planned speed to try, in this order.
 const SPEED_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
-/// Extra distance that steps keep from objects whose touch is a failure, in metres.
+/// Extra distance that steps keep from objects that fail the episode when touched, in metres.
 const CLEARANCE: f64 = 0.01;
 
-/// Which zones steps avoid, in addition to objects whose touch is a failure.
+/// Which zones steps avoid, in addition to objects that fail the episode when touched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Shield {
     /// Zones that end the episode as a failure.

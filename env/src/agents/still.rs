@@ -5,7 +5,7 @@ use driftworld_spec::{ActionModel, ActionSpace};
 use super::{Agent, in_space};
 use crate::sim::{Action, Environment};
 
-/// Stands still and does nothing. With an action table it takes the nearest row. In a world on rails it is moved nevertheless.
+/// Stands still and does nothing. With an action table it takes the nearest row. A world on rails moves it anyway.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StillAgent;
 

@@ -14,7 +14,7 @@ pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
 }
 
 /// Objects worth going to, by index, in tiers: those that pay without ending the episode; those that pay and end it as a
-/// success; those that only end it as a success. Paying objects whose touch is a failure are left out.
+/// success; those that only end it as a success. Paying objects that fail the episode when touched are left out.
 pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     let world = sim.world;
     let states = sim.objects();

@@ -78,7 +78,7 @@ pub(crate) fn write_difference(name: &str, found: &Frame, expected: &Frame) -> s
     let file = std::fs::File::create(&path).expect("cargo made the folder");
     let mut encoder = png::Encoder::new(file, 3 * width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().expect("a header");
+    let mut writer = encoder.write_header().expect("there is a header");
     writer
         .write_image_data(&rgb)
         .expect("the buffer has the announced size");

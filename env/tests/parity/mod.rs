@@ -67,7 +67,7 @@ fn worlds() -> Vec<(String, World)> {
     worlds
 }
 
-/// Views of agents from several places, a tilted view, and the arena from outside.
+/// Agents' views from several places, a tilted view, and the arena from outside.
 fn cameras(world: &World, scene: &Scene) -> Vec<Camera> {
     let agent = &world.agent_params;
     let start = agent.coordinates.map(|metres| metres as f32);
@@ -247,10 +247,10 @@ fn impossible_images_are_errors() {
     assert_eq!(error, EnvError::PictureSize { width: 4, height: 4 });
     // Rendering still works afterwards.
     gpu.render(&scene, &camera, &mut Frame::new(1, 300))
-        .expect("an odd size");
+        .expect("odd sizes are allowed");
     gpu.render(&scene, &camera, &mut Frame::new(0, 0))
-        .expect("nothing to do");
-    gpu.draw_batch(&mut []).expect("nothing to do");
+        .expect("there is nothing to render");
+    gpu.draw_batch(&mut []).expect("there is nothing to render");
 }
 
 #[test]
@@ -321,7 +321,7 @@ fn carried_things_look_the_same_alone_and_in_a_batch() {
     let batch_pixels = pixels(&images.rgb);
     let unlike = (0..shown_pixels.len()).filter(|pixel| bare_pixels[*pixel] != shown_pixels[*pixel]);
     let places: Vec<usize> = unlike.collect();
-    assert!(places.len() > 20, "it is seen: {places:?}");
+    assert!(places.len() > 20, "the carried object is visible: {places:?}");
     for pixel in places {
         assert_eq!(card_pixels[pixel], shown_pixels[pixel], "pixel {pixel} alone");
         assert_eq!(batch_pixels[pixel], shown_pixels[pixel], "pixel {pixel} in a batch");

@@ -1,4 +1,4 @@
-//! Passes libFuzzer's bytes to the law that the environment variable `DRIFTWORLD_FUZZ_TARGET` names.
+//! Passes libFuzzer's bytes to the check of the target that the environment variable `DRIFTWORLD_FUZZ_TARGET` names.
 
 #![no_main]
 

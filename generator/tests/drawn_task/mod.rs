@@ -29,8 +29,8 @@ impl Numbers {
 /// A parameter that may be chosen: its name, its declaration, and candidate default values.
 type Candidate = (&'static str, &'static str, Vec<&'static str>);
 
-/// The candidates, each ended by a semicolon. `ends` stands for the two ends of the distribution of a
-/// randomized parameter.
+/// The candidates, each terminated by a semicolon. `ends` stands for the two ends of the distribution of a randomized
+/// parameter.
 const CANDIDATES: &str = r#"
 a | "type": "number", "range": [0, 1] | 0 | 0.3 | 0.55 | 1;
 wolf_speed | "type": "number", "range": [0, 10] | 0 | 1 | 2.5 | 6;
@@ -176,7 +176,7 @@ fn condition(numbers: &mut Numbers, names: &[&str]) -> String {
         "law" => "true".to_owned(),
         other => {
             let (name, scale) = number(numbers, &[other]).expect("all others are numbers");
-            // A search, even on a grid, would meet an exact real number only by accident.
+            // A search, even on a grid, would hit an exact real number only by chance.
             let sign = if matches!(other, "n" | "m") { "!=" } else { "<=" };
             format!("{name} {sign} {}", (scale / 2.0).round())
         }

@@ -102,7 +102,7 @@ impl Life<'_> {
                     let noise = ((experience * 7919 + row * 31) % 101) as f64 / 101.0;
                     let reward = 10.0 * (1.0 - (-seen / 3.0).exp()) + noise + task as f64;
                     let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + experience as i64 * 1000)
-                        .expect("the time is a possible one");
+                        .expect("the time is valid");
                     let mut record =
                         Record::new(block, experience, kind, &tasks[task], when).with_metric("reward", reward);
                     if self.sleeps && kind == BlockType::Train && row >= count / 2 {
@@ -143,7 +143,7 @@ impl Lived {
             options: serde_json::to_value(&self.options).expect("options are JSON"),
             ..Report::default()
         };
-        report.to_html().expect("it is one lifetime")
+        report.to_html().expect("there is one lifetime")
     }
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn page_of_two() -> String {
     let options = BootstrapOptions::default();
     let report = Report {
         title: Some("Two <lives>".to_owned()),
-        chapters: (lives.iter().map(chapter).collect::<Result<_, _>>()).expect("they can be drawn"),
+        chapters: (lives.iter().map(chapter).collect::<Result<_, _>>()).expect("the chapters can be drawn"),
         overall: over_repeats(&scores, &options).expect("both were scored with the same options"),
         comparisons: vec![Comparison {
             agent: "mine".to_owned(),
@@ -173,5 +173,5 @@ pub(crate) fn page_of_two() -> String {
         date: Some("21 November 2026".to_owned()),
         ..Report::default()
     };
-    report.to_html().expect("they are two")
+    report.to_html().expect("there are two lifetimes")
 }

@@ -180,7 +180,7 @@ impl Show {
     fn picture(&self, asset: &Arc<Asset>, heading_deg: f32) -> Picture {
         let mut world = WorldDraft::with_objects(vec![Object::new("cube", [0.0, 0.0])]);
         world.environment_params.wall_height = 0.0;
-        let mut scene = Scene::from_world(&world.check().expect("a cube on open ground is sound"));
+        let mut scene = Scene::from_world(&world.check().expect("a cube on open ground is valid"));
         let item = &mut scene.items[0];
         item.scale = SHOWN_SIZE / asset.height.max(2.0 * asset.radius);
         item.asset = Arc::clone(asset);
@@ -204,7 +204,7 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     world.environment_params.looks.style = Style::Natural;
     // The light comes from behind the camera, to its left.
     world.environment_params.sun_direction = [-0.5, -0.6, 0.6];
-    let mut scene = Scene::from_world(&world.check().expect("a model on open ground is sound"));
+    let mut scene = Scene::from_world(&world.check().expect("a model on open ground is valid"));
     let item = &mut scene.items[0];
     item.heading_deg = 210.0;
     let reach = item.asset.height.max(2.0 * item.asset.radius) * item.scale;

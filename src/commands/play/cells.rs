@@ -92,7 +92,7 @@ mod tests {
                 .expect("a code ends with a letter");
             let numbers: Vec<usize> = code[..end]
                 .split(';')
-                .map(|number| number.parse().expect("a number"))
+                .map(|number| number.parse().expect("it is a number"))
                 .collect();
             match (&code[end..=end], &numbers[..]) {
                 ("H", [row, column]) => index = (row - 1) * COLUMNS + column - 1,
@@ -128,7 +128,7 @@ mod tests {
                 prop_assert_eq!(cells.draw_over(Some(&cells)), "");
                 let lit = cells.cells.iter().flatten().filter(|pixel| **pixel != [0; 3]).count();
                 let expected = picture.rgb.chunks_exact(3).filter(|pixel| *pixel != [0; 3]).count();
-                prop_assert_eq!(lit, expected, "the whole picture is there");
+                prop_assert_eq!(lit, expected, "the whole picture is drawn");
                 before = Some(cells);
             }
         }

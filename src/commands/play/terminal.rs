@@ -103,7 +103,7 @@ fn restore() {
     {
         let before = BEFORE.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(before) = before {
-            // A terminal that is gone needs nothing.
+            // If the terminal is gone, there is nothing to restore.
             let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
             let _ = io::stdout().lock().write_all(LEAVE.as_bytes());
             let _ = io::stdout().lock().flush();

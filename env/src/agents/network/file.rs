@@ -52,7 +52,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
     let image = file.layer("trunk.image", halves * halves * 2 * width, None)?;
     let hidden = image.outputs() as u64;
     let policy = file.layer("policy", hidden, Some(actions.len() as u64))?;
-    // Per 2 × 2 patches: the patches themselves, the layer that joins them, and their share of the hidden layer.
+    // Per block of 2 × 2 patches: the patches themselves, the layer that joins them, and their share of the hidden layer.
     let products_per_block = width * ((4 * PATCH * PATCH * 3) as u64 + 8 * width + 2 * hidden);
     let products = halves * halves * products_per_block + hidden * actions.len() as u64;
     if products > MAX_NETWORK_PRODUCTS {

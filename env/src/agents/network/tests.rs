@@ -7,7 +7,8 @@ use driftworld_spec::{ActionSpace, World};
 use super::{Agent, NetworkAgent, Trained, file};
 use crate::sim::{Action, Environment};
 
-/// Three actions held for five time steps, images of 16 × 16 pixels; written by `scripts/golden_network.py`.
+/// A network with three actions, each held for five time steps, and images of 16 × 16 pixels; written by
+/// `scripts/golden_network.py`.
 const NETWORK: &[u8] = include_bytes!("../../../tests/golden/network.safetensors");
 
 fn trained() -> Trained {
@@ -39,7 +40,7 @@ fn actions(agent: &mut dyn Agent, seed: u64, edit: impl FnOnce(&mut driftworld_s
 #[test]
 fn log_probabilities_match_torch() {
     let rows: Vec<Vec<f64>> =
-        serde_json::from_str(include_str!("../../../tests/golden/network.json")).expect("rows of numbers");
+        serde_json::from_str(include_str!("../../../tests/golden/network.json")).expect("it has rows of numbers");
     let network = trained().network;
     assert_eq!(rows.len(), 4);
     for (number, expected) in rows.iter().enumerate() {
@@ -115,9 +116,9 @@ fn sampling_depends_only_on_the_episode_seed() {
 
 /// The file with one word of its header replaced.
 fn changed(from: &str, to: &str) -> Vec<u8> {
-    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
+    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("the file starts with eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
-    let header = std::str::from_utf8(header).expect("JSON");
+    let header = std::str::from_utf8(header).expect("it is JSON");
     assert!(header.contains(from), "{from}");
     let header = header.replacen(from, to, 1);
     [&(header.len() as u64).to_le_bytes(), header.as_bytes(), data].concat()
@@ -125,19 +126,19 @@ fn changed(from: &str, to: &str) -> Vec<u8> {
 
 #[test]
 fn bf16_tensors_give_the_same_output_as_f32() {
-    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
+    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("the file starts with eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
     let rounded: Vec<[u8; 4]> = data.as_chunks().0.iter().map(|[_, _, c, d]| [0, 0, *c, *d]).collect();
     let halves: Vec<u8> = rounded.iter().flat_map(|bytes| &bytes[2..]).copied().collect();
-    let mut tensors: serde_json::Value = serde_json::from_slice(header).expect("JSON");
-    for tensor in tensors.as_object_mut().expect("tensors").values_mut().skip(1) {
-        let offsets = [0, 1].map(|k| tensor["data_offsets"][k].as_u64().expect("an offset") / 2);
+    let mut tensors: serde_json::Value = serde_json::from_slice(header).expect("it is JSON");
+    for tensor in tensors.as_object_mut().expect("there are tensors").values_mut().skip(1) {
+        let offsets = [0, 1].map(|k| tensor["data_offsets"][k].as_u64().expect("it is an offset") / 2);
         (tensor["dtype"], tensor["data_offsets"]) = ("BF16".into(), offsets.as_slice().into());
     }
     let short = tensors.to_string();
     let file = |header: &[u8], data: &[u8]| [&(header.len() as u64).to_le_bytes(), header, data].concat();
     let [long, short] = [file(header, rounded.as_flattened()), file(short.as_bytes(), &halves)]
-        .map(|file| file::read("halves", &file).expect("a network").network);
+        .map(|file| file::read("halves", &file).expect("it is a valid network").network);
     assert_eq!(
         long.log_policy(&[77; 16 * 16 * 3]),
         short.log_policy(&[77; 16 * 16 * 3])

@@ -17,8 +17,8 @@ const SIDE: f32 = 0.2;
 const MIN_CLEARANCE: f32 = 0.04;
 const PREFERRED_CLEARANCE: f32 = 0.25;
 
-/// Clearance from closed doors, and from objects whose touch is a failure, in metres. The latter exceeds the distance that
-/// `shield.rs` keeps from them.
+/// Clearance from closed doors, and from objects that fail the episode when touched, in metres. The latter exceeds the distance
+/// that `shield.rs` keeps from them.
 const DOOR_CLEARANCE: f32 = 0.02;
 const FAILURE_CLEARANCE: f32 = 0.15;
 
