@@ -127,7 +127,7 @@ impl Scale {
     /// The scale with this name.
     ///
     /// # Errors
-    /// The found and the expected names.
+    /// If no scale has this name; the message lists the expected names.
     pub fn from_name(name: &str) -> Result<Self, String> {
         let names = Self::VARIANTS.join(" or ");
         name.parse().map_err(|_| format!("found {name:?}, expected {names}"))

@@ -49,7 +49,7 @@ pub enum FilmModality {
 /// Parses a word.
 ///
 /// # Errors
-/// The found and the expected words.
+/// If the word is unknown; the message lists the expected words.
 pub fn named<T: ValueEnum>(word: &str) -> Result<T, String> {
     T::from_str(word, false).map_err(|_| {
         let words = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
@@ -118,7 +118,7 @@ impl FilmOptions {
         1 + steps.div_ceil(self.every.max(1) as usize)
     }
 
-    /// Whether there is a frame after `number` steps of an episode of `last`.
+    /// Whether there is a frame after `number` steps of an episode with `last` steps.
     fn shows(&self, number: usize, last: usize) -> bool {
         number.is_multiple_of(self.every as usize) || number == last
     }
@@ -136,7 +136,7 @@ impl FilmOptions {
     /// Refuses impossible or meaningless combinations of options.
     ///
     /// # Errors
-    /// Which option, and what to do.
+    /// [`Failure`] that names the option and says what to do.
     pub fn check(&self) -> Result<(), Failure> {
         if !(1..=MAX_FILM_SIZE).contains(&self.size) || self.every < 1 {
             return Err(Failure::usage(format!(
@@ -179,7 +179,7 @@ impl FilmOptions {
 /// is as recorded.
 ///
 /// # Errors
-/// A step that is no longer possible, or a reward or ending that differs from the recording; errors of `take`.
+/// [`Failure`] if a step is no longer possible, the reward or ending differs from the recording, or `take` fails.
 pub fn film(
     recording: &Recording,
     catalogue: &Catalogue,
@@ -297,7 +297,7 @@ fn film_kind(path: &Path) -> Result<Option<FilmKind>, Failure> {
 /// Refuses a file name without the extension of a film or a sheet.
 ///
 /// # Errors
-/// The accepted extensions.
+/// [`Failure`] that lists the accepted extensions.
 pub fn expect_film(path: &Path) -> Result<(), Failure> {
     film_kind(path).map(drop)
 }
@@ -306,7 +306,7 @@ pub fn expect_film(path: &Path) -> Result<(), Failure> {
 /// simulated time, but no faster than viewers show. `watch` gets the number of finished frames.
 ///
 /// # Errors
-/// As [`film`], and if the file cannot be written. After an error there is no file.
+/// As [`film`], and if the file cannot be written. No file is left after an error.
 pub fn write_film(
     path: &Path,
     recording: &Recording,

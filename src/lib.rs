@@ -1,4 +1,5 @@
-//! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to run them in.
+//! Driftworld samples worlds from typed task specs, measures distances between them, designs curricula, and runs agents in a
+//! first-person environment.
 //!
 //! This crate re-exports the workspace's crates and adds what connects them: the built-in tasks, names for tasks, worlds as
 //! tables, distances among variants of any tasks, picture distances, and the `driftworld` command. Only the command prints.
@@ -25,7 +26,7 @@ pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
-// The workbench in a browser (`studio/wasm/`) needs the modules without `cfg`: there are no files, terminal or figures.
+// The workbench in a browser (`studio/wasm/`) needs the modules without `cfg`: it has no files, terminal or figures.
 pub mod behavior;
 #[cfg(not(target_family = "wasm"))]
 mod checksum;

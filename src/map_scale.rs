@@ -84,7 +84,7 @@ fn bar_metres(max: f32) -> f32 {
     steps.into_iter().find(|step| *step <= max).unwrap_or(power)
 }
 
-/// A bar with its length.
+/// A scale bar with its label.
 pub(crate) struct Bar {
     label: String,
     length: f32,

@@ -59,7 +59,7 @@ pub enum DesignOrder {
 }
 
 impl DesignOrder {
-    /// The orders by word.
+    /// The orders, each with its word.
     pub const WORDS: [(&'static str, Self); 6] = [
         ("gradual", Self::Gradual),
         ("outward", Self::Outward),
@@ -222,7 +222,7 @@ impl OrderRequest {
 /// The index of a label, found by the full label, or by the variant's name alone if that is unique.
 ///
 /// # Errors
-/// A remark to insert in the error message.
+/// If the label is unknown or ambiguous; returns a remark to insert in the error message.
 pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usize, &'static str> {
     if let Some(index) = labels.iter().position(|label| label.as_ref() == name) {
         return Ok(index);

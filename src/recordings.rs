@@ -37,7 +37,7 @@ impl RecordedEpisodes {
     /// Opens a log's folder, or a file of recordings.
     ///
     /// # Errors
-    /// If it is neither, or cannot be read.
+    /// [`Failure`] if the path is neither, or cannot be read.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let mut episodes = Self {
             path: path.to_owned(),
@@ -71,7 +71,8 @@ impl RecordedEpisodes {
         Ok(episodes)
     }
 
-    /// The numbers of all episodes, for a log each with its worker. They are ordered by block, so that each file is read once.
+    /// The numbers of all episodes, each with its worker if they come from a log. They are ordered by block, so that each file
+    /// is read once.
     pub fn all(&self) -> Vec<(u64, Option<String>)> {
         let Some(rows) = &self.rows else {
             let numbers: BTreeSet<u64> = self.episodes_in_file().map(|origin| origin.experience).collect();
@@ -96,7 +97,7 @@ impl RecordedEpisodes {
     /// number, `worker` selects one.
     ///
     /// # Errors
-    /// If there is no such episode, or its recording is damaged.
+    /// [`Failure`] if there is no such episode, or its recording is damaged.
     pub fn recording(&mut self, number: u64, worker: Option<&str>) -> Result<Option<Recording>, Failure> {
         if self.rows.is_some() {
             let block = self.row(number, worker)?.block.clone();

@@ -225,7 +225,7 @@ impl Named {
     /// Plans the scenario with these tasks and world files.
     ///
     /// # Errors
-    /// As [`Plan::with_undrawable`], also if something is missing.
+    /// As [`Plan::with_undrawable`], and if a task or world file is missing.
     pub fn plan(&self, scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
         let missing = |name: &str| format!("found {name:?}, expected a task that the scenario was read with");
         let mut sources = Sources {

@@ -12,7 +12,7 @@ use crate::value_words::short;
 pub(crate) enum Worlds {
     /// By index.
     Numbered,
-    /// By position in a scenario: its indices mean nothing to a reader.
+    /// By position in a scenario, whose world indices mean nothing to a reader.
     OfScenario,
     /// The last world of a drift.
     EndOfDrift,

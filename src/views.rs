@@ -381,7 +381,7 @@ impl<'a> Views<'a> {
     /// A camera that sees an object, if possible from the agent's side; `None` if walls or other objects hide it from all sides.
     fn near(&self, index: usize) -> Result<Option<Camera>, Failure> {
         let mut best: (u32, Option<Camera>) = (MIN_CLOSE_UP_PIXELS, None);
-        // From the agent's side first; then closer, at shares of the default distance.
+        // Tries the agent's side first, then views from closer, at shares of the default distance.
         let candidates = [1.0, 0.6]
             .into_iter()
             .flat_map(|closeness| TURNS.map(|turn| (turn, closeness)));

@@ -382,7 +382,7 @@ fn every_key_takes_a_parameter_or_documents_why_not() {
 fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     let pointer = first(place, full);
     match place.pointer.as_str() {
-        // Without a text there is no layout.
+        // A layout needs its text.
         "/$schema"
         | "/version"
         | "/objects/*"

@@ -375,7 +375,7 @@ fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
             .zip(before.last())
             .is_some_and(|(first, last)| first[3..] != last[3..]);
         assert!(moved, "objects move in world {number}");
-        // All at once; single keys are tried only after a failure.
+        // Change all keys at once; try single keys only after a failure.
         let mut changed = world.clone();
         for key in &keys {
             let examples = examples_of(key);

@@ -131,7 +131,7 @@ fn every_task_and_every_example_world_replays() {
     let mut names = Vec::new();
     for variant in &*ALL_VARIANTS {
         let task = variant.task().name().to_owned();
-        // Only the first one or two variants of each task; the property test below draws others.
+        // Tests only the first one or two variants of each task; the property test below draws others.
         if names.iter().filter(|name| **name == task).count() >= crate::tier::quick_or_full(1, 2) {
             continue;
         }
@@ -224,7 +224,7 @@ proptest! {
         let cut = &text.as_bytes()[..offset];
         if let Ok((found, errors)) = read_all(cut) {
             let num_lines = cut.split(|byte| *byte == b'\n').count() - 1;
-            // A header, then a world and an episode each.
+            // The file has a header, then for each recording a line for its world and one for its episode.
             prop_assert_eq!(found.len(), num_lines.saturating_sub(1) / 2);
             prop_assert_eq!(&found[..], &recordings[..found.len()]);
             prop_assert_eq!(errors.len(), usize::from(cut.last() != Some(&b'\n')));

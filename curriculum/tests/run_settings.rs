@@ -18,7 +18,7 @@ pub(crate) struct RunSettings {
     pub(crate) jobs: usize,
     /// Whether the run continues an existing log.
     pub(crate) resume: bool,
-    /// Number of evaluations of each block that run twice.
+    /// Number of evaluations per block that are run twice.
     pub(crate) repeated: usize,
     /// Stops the run at the next step.
     pub(crate) stop: Arc<AtomicBool>,

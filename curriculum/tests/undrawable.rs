@@ -155,7 +155,7 @@ fn worlds_are_tried_before_the_run() {
 
     let plan = plan(&scenario(true), Undrawable::Skipped).expect("nothing is refused");
     let mut tried = Tried::default();
-    // Two worlds of each regime, and every variant of the drift: values between 4 and 6 are forbidden.
+    // Tries two worlds of each regime, and every variant of the drift, in which values between 4 and 6 are forbidden.
     let trials = plan.try_worlds(2, &mut tried);
     let drift = trials
         .iter()

@@ -67,7 +67,7 @@ fn world() -> World {
         Modality::Instance,
     ];
     world.agent_params.supersampling = 2;
-    // On these paths no bodies overlap, which would allocate.
+    // With this seed, no bodies overlap on their paths; overlaps would allocate.
     world.seed = Some(1);
     for (index, object) in world.objects.iter_mut().enumerate() {
         object.tag = Some("group".to_owned());
@@ -201,7 +201,7 @@ fn heap_memory_is_proportional_to_the_number_of_bodies() {
                 .expect("the episode continues");
         }
         let taken = PEAK.load(Ordering::Relaxed) - before;
-        // The maximum number of contacts in a time step, and the lists of bodies.
+        // Room for the maximum number of contacts in a time step, and for the lists of bodies.
         assert!(taken < (48 << 20) + 2000 * count, "{count} cubes: {taken} bytes");
     }
 }

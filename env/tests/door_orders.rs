@@ -1,5 +1,5 @@
-//! A door obeys its last order, even if something blocks it in the meantime. The simulator is compared with a reference door of
-//! a few lines.
+//! A door obeys its last order, even if something blocks it in the meantime. The simulator is compared with a minimal reference
+//! implementation.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Object, Stimulus, Switch, SwitchAction, World, WorldDraft};

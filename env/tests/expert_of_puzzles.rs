@@ -232,7 +232,7 @@ fn key_is_not_used_on_the_wrong_door() {
             world.objects.insert(0, coin);
         });
         assert!(succeeds(coin_too.expect("the world is valid")), "{goal}");
-        // Two keys, the second behind one of the doors: that door comes first.
+        // With two keys, the second of which is behind a door, that door must be opened first.
         let more = Puzzle {
             keys: vec![(0, 0), (3 - goal, 0)],
             ..puzzle

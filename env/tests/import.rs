@@ -126,7 +126,7 @@ fn imported_models_are_upright_and_face_north() {
     );
     assert_eq!((asset.height, asset.radius), (1.0, 1.0));
     let ColliderShape::Box { half } = asset.collider else {
-        panic!("a flat model has a box collider: {:?}", asset.collider);
+        panic!("expected a box collider: {:?}", asset.collider);
     };
     assert_eq!(half, [1.0, 0.01, 0.5]);
 }

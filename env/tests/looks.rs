@@ -187,7 +187,7 @@ fn surface_has_its_plain_colour_from_a_distance() {
     let flat = draw(&ground(Surface::Plain), &eyes(20.0), [84, 84]);
     for surface in surfaces() {
         let covered = draw(&ground(surface), &eyes(20.0), [84, 84]);
-        // From 7 m on, and from 36 m on.
+        // The first rows show the ground beyond 7 m, the second beyond 36 m.
         for (rows, bound) in [(43..53, 4.0), (43..45, 1.0)] {
             let (a, b) = (mean(&flat, rows.clone()), mean(&covered, rows));
             for channel in 0..3 {
@@ -195,7 +195,7 @@ fn surface_has_its_plain_colour_from_a_distance() {
                 assert!(off < bound, "{surface:?}: {a:?} and {b:?}");
             }
         }
-        assert!(covered.rgb != flat.rgb, "{surface:?} shows from near");
+        assert!(covered.rgb != flat.rgb, "{surface:?} is visible nearby");
     }
 }
 

@@ -188,7 +188,7 @@ fn thousand_walks_end_where_a_frictionless_disc_does() {
         let mut environment = Environment::new(world);
         let radius = agent.agent_width / 2.0;
         let all = uprights(&environment);
-        // Only walks that start in the open, outside closed regions.
+        // Tests only walks that start in the open, outside closed regions.
         let is_free = all.iter().all(|body| body.distance(agent.coordinates).0 > radius + 0.1);
         if !is_free || all.iter().any(|body| body.bound() < 1e-3) {
             continue;

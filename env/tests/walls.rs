@@ -54,7 +54,7 @@ proptest! {
     #[test]
     fn agent_keeps_the_parallel_velocity_along_a_wall(
         bearing in 0.0..360.0_f64,
-        // From the wall's normal: 0 leads straight into it.
+        // The angle from the wall's normal: 0 leads straight into the wall.
         angle in prop_oneof![-89.9..-0.5_f64, 0.5..89.9_f64],
         length in 2.0..160.0_f64,
         width in 0.1..3.0_f64,
@@ -178,7 +178,7 @@ proptest! {
         }
         let again = go(&mut environment, speed);
         prop_assert!(dot(minus(again, last), minus(again, last)).sqrt() < 1e-3, "at rest in the wedge");
-        // As deep as possible: the width determines the distance from the point.
+        // The agent gets as deep as possible, so its width determines its distance from the point.
         let expected = (width / 2.0 + 0.03) / (opening / 2.0).to_radians().sin();
         prop_assert!(dot(again, axis) < expected + 0.2, "{again:?} {expected}");
     }

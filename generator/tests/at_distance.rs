@@ -143,7 +143,7 @@ fn line_cut_off_by_a_requirement_is_followed_to_its_border() {
         f64::midpoint(difference("wolf_speed"), difference("agent_speed"))
     };
     let subject = Subject::Element(driftworld_spec::Element::T);
-    // With the agent at 10 and the wolf just below, (0.9 + 0.5) / 2 is never reached, but every smaller distance is.
+    // With the agent at 10 and the wolf just below, the distance approaches (0.9 + 0.5) / 2 without reaching it.
     for target in [0.05, 0.25, 0.3, 0.45, 0.6, 0.699] {
         let found =
             at_distance(&from, &subject, target, 1e-4, distance).unwrap_or_else(|error| panic!("{target}: {error}"));

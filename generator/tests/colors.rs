@@ -255,7 +255,7 @@ fn drift_interpolates_colours_in_oklab_and_hues_the_shorter_way() {
     let Distribution::ColorHsv { hue, saturation, value } = at("before", "after", 0.5) else {
         panic!("distributions of one family are interpolated")
     };
-    // From about 350 across red to about 20, via 5.
+    // The hue range goes from about 350 across 0 (red) to about 20.
     assert_eq!(hue, Some([-10.0, 20.0]));
     assert_eq!((saturation, value), (Some([0.0, 1.0]), Some([0.25, 0.75])));
     let Distribution::ColorPerturb { value, high, .. } = at("noisy", "cut", 0.5) else {

@@ -344,7 +344,7 @@ fn object_with_its_position_taken_takes_the_next_free_one() {
         panic!("{error}")
     };
     assert_eq!(*object, 4, "{error}");
-    // The same on a grid with one position a cell; with jitter, each object tries its own cell first.
+    // The same holds on a grid with one position per cell; with jitter, each object tries its own cell first.
     let grid = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1 } }"#;
     assert_eq!(
         positions(&world(&row(grid, 3, blocked), 0)),

@@ -1,5 +1,5 @@
-//! Tests with fixed seeds that drawn numbers, headings and shares follow their declared distributions. `statistics_of_places.rs`
-//! tests positions; the spec crate tests the distributions themselves.
+//! With fixed seeds, tests that drawn numbers, headings and shares follow their declared distributions.
+//! `statistics_of_places.rs` tests positions; the spec crate tests the distributions themselves.
 
 use std::sync::Arc;
 

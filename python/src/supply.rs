@@ -99,7 +99,7 @@ impl PyStream {
             switch,
             ..RegimeDrift::to("")
         };
-        // The same seed for all, so that a value changes in the same episode in every environment.
+        // All environments share one seed, so that a value changes in the same episode in each of them.
         let drift = Arc::new(usually_rounded(|| Drift::declared(&declared, from, to, 0))?);
         Ok(Self(Stream::Drift { drift, episodes }))
     }

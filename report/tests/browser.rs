@@ -29,7 +29,7 @@ fn browser() -> Option<PathBuf> {
         "DRIFTWORLD_REQUIRE_BROWSER=1: found none of {NAMES:?} in PATH; install one, or name one in DRIFTWORLD_BROWSER"
     );
     if found.is_none() {
-        // Not with println!, whose output the test harness hides when a test passes.
+        // Does not use println!, whose output the test harness hides when a test passes.
         let _ = writeln!(std::io::stderr(), "SKIPPED: no browser in PATH; set DRIFTWORLD_BROWSER");
     }
     found

@@ -188,7 +188,7 @@ fn page_of_several_lifetimes_has_an_index_chapters_and_joint_intervals() {
         "id=\"life-2\"",
         "Over all lifetimes",
         "mine against theirs",
-        // Two lifetimes of each agent: p is at least 1/3.
+        // With two lifetimes of each agent, p is at least 1/3.
         "too few lifetimes",
         "mean reward, evaluations",
         "Student’s t",

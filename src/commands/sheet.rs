@@ -94,7 +94,7 @@ impl Sheet {
     }
 }
 
-/// A regime's variant with its caption: the description of a declared variant, or the values of one made by the scenario.
+/// A regime's variant with its caption: the description of a declared variant, or the values of one that the scenario defines.
 fn shown_regime<'a>(
     variant: Variant,
     values: impl IntoIterator<Item = (&'a String, &'a Value)>,

@@ -210,7 +210,7 @@ impl Validate {
     /// Draws some worlds of a valid document.
     ///
     /// # Errors
-    /// The code and the text of the error, if the document cannot be read or planned.
+    /// If the document cannot be read or planned; returns the code and the text of the error.
     fn try_worlds(
         &self,
         path: &Path,

@@ -115,7 +115,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     for &kind in Control::ALL.iter().filter(|_| request.controls) {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
         let name = format!("{}-{}", options.name, kind.name());
-        // As positions in the design's own order.
+        // Expressed as positions in the design's own order.
         let position = |index: &usize| chosen.order.iter().position(|own| own == index);
         let order: Vec<usize> = order.iter().filter_map(position).collect();
         controls.push(design_control(

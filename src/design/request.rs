@@ -258,7 +258,7 @@ impl DesignRequest {
     /// Refuses contradictory options; [`design`](super::design) calls it first.
     ///
     /// # Errors
-    /// [`Failure::Usage`].
+    /// [`Failure::Usage`] if options contradict each other.
     pub fn check(&self) -> Result<(), Failure> {
         let given = [
             ("variants", self.variants.is_some()),

@@ -47,7 +47,7 @@ pub(super) fn name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String,
 /// An element by its letter or name.
 ///
 /// # Errors
-/// The expected words, as a message.
+/// If the text is none of the expected words; the message lists these.
 pub fn element(text: &str) -> Result<Element, String> {
     let is_meant =
         |element: &Element| element.letter().eq_ignore_ascii_case(text) || element.name().eq_ignore_ascii_case(text);
@@ -60,7 +60,7 @@ pub fn element(text: &str) -> Result<Element, String> {
 /// A schedule, such as `cosine` or `step:4`.
 ///
 /// # Errors
-/// The expected words, as a message.
+/// If the text is none of the expected words; the message lists these.
 pub fn schedule(text: &str) -> Result<DriftSchedule, String> {
     let number = |word: &str| text.strip_prefix(word)?.parse().ok().filter(|number| *number > 0);
     match text {

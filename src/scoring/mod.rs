@@ -1,4 +1,4 @@
-//! [`score`]: scores the logs in folders: what agents retained and transferred.
+//! [`score`]: scores the logs in folders by what agents retained and transferred.
 
 mod comparison;
 mod experts;

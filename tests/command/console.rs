@@ -45,7 +45,7 @@ fn transcript(lines: &str) -> String {
     stdout_of(&output, &out)
 }
 
-/// The refusals of the console, line by line; nothing is written.
+/// The console's answers to lines that it must refuse, none of which may write anything.
 #[track_caller]
 fn refused(lines: &str) -> String {
     let folder = scratch();

@@ -81,7 +81,7 @@ fn contradiction_is_reported_with_its_first_case() {
         (&report[0]["valid"], &report[0]["problems"][0]["code"]),
         (&false.into(), &"task/elements".into())
     );
-    // Follows the advice.
+    // Follow the advice in the message.
     lamp("phi");
     let stdout = succeed_in(folder.path(), "validate --elements lamp.json");
     assert!(stdout.contains("a valid task"), "{stdout}");

@@ -290,7 +290,7 @@ fn documents_from_new_and_export_validate_sample_and_run() {
     let stdout = succeed_in(path, &["new", "berries"]);
     stdout.says("wrote berries.json");
     stdout.says("driftworld validate berries.json");
-    // Follows the advice.
+    // Follow the advice in the output.
     let advised: Vec<Vec<&str>> = stdout
         .lines()
         .filter_map(|line| line.strip_prefix("  driftworld "))
@@ -298,7 +298,7 @@ fn documents_from_new_and_export_validate_sample_and_run() {
         .collect();
     assert_eq!(advised.len(), 6, "{stdout}");
     for arguments in advised {
-        // Small enough for a test.
+        // Shorten the run, so that the test takes little time.
         let small: Vec<&str> = arguments
             .iter()
             .map(|word| match *word {

@@ -271,7 +271,7 @@ fn documents(stage: &mut Stage) {
         stage.run(&["validate", &name]);
         let json = stage.run(&["validate", &name, "--json"]);
         serde_json::from_slice::<Value>(&json.stdout).expect("--json prints JSON");
-        // In the quick tier, one command for each document.
+        // The quick tier runs one command for each document.
         let commands = "sample render console photograph sheet order curriculum convert";
         let tried = commands.split(' ').enumerate();
         for (_, command) in tried.filter(|(turn, _)| is_turn(turn + number, 8)) {

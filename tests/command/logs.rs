@@ -191,7 +191,7 @@ fn several_logs_make_one_table_with_their_names() {
     let text = fs::read_to_string(base.path().join("all.tsv")).expect("it was written");
     let first: Vec<&str> = text.lines().filter_map(|line| line.split('\t').next()).collect();
     assert_eq!(first, ["run_id", "one", "one", "two", "two"]);
-    // As `driftworld run -o` leaves them: in separate folders, all with the same name.
+    // `driftworld run -o` often writes logs in this way: into separate folders, all with the same name.
     write_log(&base.path().join("runs/x/log"));
     write_log(&base.path().join("runs/y/log"));
     let (out, _) = run(base.path(), 0, "logs aggregate -R runs --format tsv -o -");

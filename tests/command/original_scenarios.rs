@@ -16,7 +16,7 @@ fn l2explorer_scenario_runs_unchanged() {
         return;
     };
     let folder = scratch();
-    // As in L2Explorer: the maps are one folder above the scenario.
+    // L2Explorer keeps the maps one folder above the scenario.
     let scenario = folder.path().join("scenarios/scenario_findobjects.json");
     let copy = |from: &Path, to: &Path| write(to, &fs::read_to_string(from).expect("the reference can be read"));
     copy(&original, &scenario);
@@ -45,7 +45,7 @@ fn l2explorer_scenario_runs_unchanged() {
     let metrics = succeed(&["metrics", text(&log), "--json"]);
     assert!(metrics.contains("task1_mapfindobjects0"), "{metrics}");
 
-    // As in our checkout: one map is beside the scenario, the other is missing.
+    // In our checkout, one map is beside the scenario, and the other is missing.
     let error = fail(
         1,
         &format!(

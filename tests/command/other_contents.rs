@@ -77,7 +77,7 @@ fn document_of_the_wrong_kind_is_named() {
     let folder = everything();
     for (number, (command, accepted)) in COMMANDS.into_iter().enumerate() {
         for (kind, (document, name)) in KINDS.into_iter().enumerate() {
-            // In the quick tier each command with every third kind.
+            // The quick tier runs each command with every third kind.
             if accepted.contains(&document) || !is_turn(number + kind, 3) {
                 continue;
             }

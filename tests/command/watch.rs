@@ -79,7 +79,7 @@ fn killed_recorded_run_resumes_and_keeps_every_byte() {
     let all = ["run", text(&scenario), "--agent", "random"];
     succeed(&[&all[..], &["--record", "--output", text(&whole)]].concat());
     let expected = files(&whole);
-    // As a killed run leaves it: the recording of the next experience exists, whole or in part, but its row does not.
+    // A killed run may leave a complete or partial recording of the next experience, but no row for it.
     let table = |log: &Path, block: &str| log.join("worker-default").join(block).join("data-log.tsv");
     for (rows, cut) in [(0, 3), (2, 700), (5, 0)] {
         let log = folder.path().join(format!("killed-{rows}-{cut}"));
@@ -92,7 +92,7 @@ fn killed_recorded_run_resumes_and_keeps_every_byte() {
         fs::write(table(&log, "0-test"), rows_kept).unwrap();
         let done = fs::read(recordings(&log, "0-test")).unwrap();
         fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
-        // Without `--record`: a log that was started with it keeps recording.
+        // A log that was started with `--record` keeps recording even if it is resumed without the option.
         succeed(&[&all[..], &["--resume", "--output", text(&log)]].concat());
         assert_eq!(files(&log), expected, "{rows} rows, cut by {cut} bytes");
     }

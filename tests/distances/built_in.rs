@@ -100,7 +100,7 @@ fn distance_depends_on_the_pair_alone() {
         let other = load(&other);
         let (first, second) = (measure(&task), measure(&other));
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).unwrap_or_else(|error| panic!("{error}"));
-        // In the quick tier every third variant.
+        // The quick tier tests every third variant.
         for a in all.iter().step_by(quick_or_full(3, 1)) {
             for b in &all {
                 let rewritten = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
@@ -114,7 +114,7 @@ fn distance_depends_on_the_pair_alone() {
                 );
             }
         }
-        // Also with no other variants.
+        // The distance is the same in a task with no other variants.
         for pair in all.windows(2).step_by(quick_or_full(5, 1)) {
             let mut alone = document.clone();
             alone["variants"] = json!({ "b": set_by(&pair[1]), "a": set_by(&pair[0]) });
@@ -163,7 +163,7 @@ fn equal_parameters_do_not_dilute_the_distance() {
 }
 
 #[test]
-fn full_range_of_a_parameter_is_1_and_0_if_unread() {
+fn full_range_of_a_parameter_has_distance_1_or_0_if_unread() {
     let mut idle = 0;
     for (task, _) in built_in() {
         let measure = measure(&task);

@@ -1,5 +1,5 @@
-//! Computes the distance of two variants from the JSON of their task alone, by the table in `docs/similarity.md` and without the
-//! crate `similarity`.
+//! Computes the distance of two variants from the JSON of their task alone, following the table in `docs/similarity.md`,
+//! without the crate `similarity`.
 
 #![expect(
     clippy::disallowed_methods,
@@ -12,7 +12,7 @@ use serde_json::{Map, Value as Json};
 
 use super::drawn_specs::{MIN_WIDTH, Spec};
 
-/// A distance: the total, and each element's.
+/// The total distance, and the distance in each element.
 #[derive(Debug)]
 pub(crate) struct ByHand {
     pub(crate) total: f64,

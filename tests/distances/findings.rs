@@ -120,7 +120,7 @@ fn scale_covers_everything_that_a_distribution_reads() {
     assert_eq!(parts(by_choice, "c", "d"), [("law".to_owned(), 0.0)]);
 }
 
-/// A suspected bug: among more than 24 distributions, the search for the widest pair starts at the first.
+/// A suspected bug: among more than 24 distributions, the search for the widest pair starts at the first one.
 #[test]
 fn scale_does_not_depend_on_the_order_of_parameters() {
     let task = |is_reversed: bool| {
@@ -152,7 +152,7 @@ fn scale_does_not_depend_on_the_order_of_parameters() {
 }
 
 /// `vary find_objects#blue --element T --distance 0.5` printed `reach 20, hold 10`, although `reach` has no effect on objects
-/// that are triggered by contact. The same was wrong with 15 of 125 results for built-in variants.
+/// that are triggered by contact. 15 of 125 results for built-in variants had the same fault.
 #[test]
 fn unread_parameters_make_no_distance() {
     let from = built_in("find_objects#blue");

@@ -137,7 +137,7 @@ pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
     newcomer.pip(workspace, "install --quiet ./python", &[])?;
     let mut first_steps = newcomer.python(workspace, &["-W", "error"]);
     first_steps.arg(workspace.root.join("python/tests/newcomer.py"));
-    // From a folder outside the checkout's packages, so that the installed package is used.
+    // Runs in a folder outside the checkout's packages, so that the installed package is used.
     first_steps.current_dir(workspace.target.join("python"));
     run(first_steps)?;
     Ok(Outcome::Passed(String::new()))

@@ -103,7 +103,7 @@ impl Disc {
         column(x).filter_map(move |middle| {
             let dy = grid.centre(middle)[1] - y;
             let half = (self.radius * self.radius - dy * dy).max(0.0).sqrt();
-            // Two extra cells on each side, against rounding.
+            // Two extra cells on each side allow for rounding.
             let end = |sign: f32| {
                 let [x, y] = [x + sign * (half + 2.0 * grid.side()), grid.centre(middle)[1]];
                 grid.cell_at([x, y])

@@ -153,7 +153,7 @@ impl Metrics {
                 ..options.clone()
             };
             let drawn = drawn(&log.lifetime, &log.metrics.metrics_column, &shown, &options)?;
-            // A panic while holding the lock has already ended the process.
+            // A panic while holding the lock would already have ended the process.
             files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)
         })?;
         let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -8,7 +8,7 @@ use driftworld_text::{counted, when};
 use crate::report::picture::{Panel, Point};
 use crate::table::table;
 
-/// Maximum number of pairs in the table; the others are counted.
+/// Maximum number of pairs in the table; the others are only counted.
 const MAX_PAIRS: usize = 40;
 
 /// The whole report.

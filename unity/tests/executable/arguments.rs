@@ -115,7 +115,7 @@ fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
             "driftworld-unity: \"--raw-observation\" is not known here and ignored; did you mean --raw-observations?",
         ]
     );
-    // Follows the advice.
+    // Follow the advice in the message.
     let (ended, _) = observe_once(&["--raw-observations"], folder.path());
     assert!(!ended.stderr.contains("not known"), "{ended:?}");
 }

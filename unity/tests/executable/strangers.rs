@@ -108,7 +108,7 @@ fn invalid_host_is_reported() {
     let expected =
         "driftworld-unity: not a machine:5004: expected the name or address of a machine, such as 127.0.0.1\n";
     assert_eq!(ended.stderr, expected);
-    // Follows the advice.
+    // Follow the advice in the message.
     let client = Client::new([who("1.0.0"), command(CommandProto::Quit)]);
     let ended = start(&client, &["--host", "127.0.0.1"], &std::env::temp_dir()).ended();
     assert_eq!(ended.code, Some(0), "{ended:?}");

@@ -118,7 +118,7 @@ fn sampling_depends_only_on_the_episode_seed() {
 fn changed(from: &str, to: &str) -> Vec<u8> {
     let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("the file starts with eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
-    let header = std::str::from_utf8(header).expect("it is JSON");
+    let header = std::str::from_utf8(header).expect("it is UTF-8");
     assert!(header.contains(from), "{from}");
     let header = header.replacen(from, to, 1);
     [&(header.len() as u64).to_le_bytes(), header.as_bytes(), data].concat()
@@ -161,7 +161,7 @@ fn bad_files_are_refused_with_where_and_what() {
     ];
     let mut infinite = NETWORK.to_vec();
     let last = infinite.len();
-    // The last tensors are the value head's, which is not read: 9 numbers.
+    // The last 9 numbers belong to the value head, which is not read.
     infinite[last - 40..last - 36].copy_from_slice(&f32::NAN.to_le_bytes());
     lines.push(refusal(&infinite));
     for (from, to) in [
