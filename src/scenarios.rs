@@ -159,15 +159,13 @@ impl ScenarioFile {
             }
             (stand_in, _) => {
                 let option = if self.original {
-                    "without --no-stand-in"
+                    "omit --no-stand-in"
                 } else {
-                    "with --stand-in"
+                    "add --stand-in"
                 };
-                let advice = stand_in.map_or_else(String::new, |file| {
-                    format!("; or use {} instead {option}", file.shown())
-                });
+                let advice = stand_in.map_or_else(String::new, |file| format!("; or {option} to use {}", file.shown()));
                 Err(format!(
-                    "found no file {:?}, looked for {searched}, expected a world file; put it there{advice}",
+                    "found no file {:?}, looked for {searched}, expected a world file; create it{advice}",
                     named.display().to_string()
                 ))
             }
@@ -277,7 +275,7 @@ pub fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, Curricu
         task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
         world: &mut |path| {
             Err(format!(
-                "found the world file {path:?}, expected variants of tasks alone"
+                "found the world file {path:?}, expected only variants of tasks"
             ))
         },
     };

@@ -29,7 +29,7 @@ fn world_file(path: &Path, l2explorer: bool, maps: &MapLibrary) -> Result<(World
         Ok(world) => Ok((world.with_maps(maps), Vec::new())),
         Err(error) => Err(match World::from_l2explorer(&name, &text) {
             Ok(_) => Failure::input(format!(
-                "{error}\nhint: this looks like a map of L2Explorer; add {}",
+                "{error}\nhint: this looks like an L2Explorer map; add {}",
                 argument("l2explorer")
             )),
             Err(_) => error.into(),

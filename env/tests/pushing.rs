@@ -59,7 +59,7 @@ fn heavy_and_static_objects_stop_the_agent() {
 }
 
 #[test]
-fn object_on_ice_slides_on() {
+fn object_on_ice_keeps_sliding() {
     let slid = |friction: f64| {
         let mut environment = start(vec![body([0.0, 2.0], 10.0, friction)]);
         go(&mut environment, AHEAD, 8);
@@ -78,7 +78,7 @@ fn off_centre_push_rotates_the_object() {
     let turned = environment.scene().items[0].heading_deg;
     assert!(
         (2.0..358.0).contains(&turned),
-        "the right side stays back, the left one is pushed: {turned}"
+        "the left side is pushed and the right side lags behind: {turned}"
     );
 }
 
@@ -90,7 +90,7 @@ fn pushed_object_pushes_the_next() {
 }
 
 #[test]
-fn pushing_is_a_contact() {
+fn pushing_counts_as_a_contact() {
     let mut pays = body([0.0, 2.0], 10.0, 0.5);
     pays.reward = 1.0;
     pays.reward_once_stimulus = vec![Stimulus::AgentCollide];

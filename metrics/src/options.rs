@@ -337,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_round_trip_and_unknown_word_is_refused_with_known_words() {
+    fn words_round_trip_and_an_unknown_word_lists_the_known_ones() {
         for &method in SmoothingMethod::ALL {
             assert_eq!(method.name().parse::<SmoothingMethod>().unwrap(), method);
         }

@@ -232,7 +232,7 @@ fn invalid_records_are_refused_and_nothing_is_written() {
     );
     check(
         Record::new(0, 4, BlockType::Train, "a_b", stamp(0)),
-        "record of experience 4, metrics: found none, expected also reward, a metrics column of the log",
+        "record of experience 4, metrics: found none, expected them to include reward, a metrics column of the log",
     );
     check(
         record(0, 4, BlockType::Train).with_metric("reward", f64::INFINITY),

@@ -39,7 +39,7 @@ fn pictures_distinguish_visible_changes_only() {
 #[test]
 fn every_measure_has_a_name_for_the_command() {
     for by in driftworld::distances::By::names() {
-        // Whole meadows take seconds by bisimulation; the library's tests use a small one.
+        // With bisimulation, a whole meadow takes seconds; the library's tests use a small one.
         if *by == "dynamics:bisimulation" {
             continue;
         }
@@ -73,7 +73,7 @@ fn order_and_curriculum_accept_the_same_names() {
 }
 
 #[test]
-fn shares_are_of_the_tasks_diameter() {
+fn shares_divide_distances_by_the_tasks_diameter() {
     let between = |scale: &str| json(&format!("distance find_objects#red dusk --scale {scale} --json"));
     let (units, share) = (between("units"), between("share"));
     let description = share["compared"].as_str().expect("the output describes the comparison");

@@ -55,7 +55,7 @@ fn l2explorer_scenario_runs_unchanged() {
         ),
     );
     error.says("found no file \"../map_findobjects_1.json\", looked for");
-    error.says("map_findobjects_0.json instead without --no-stand-in");
+    error.says("; or omit --no-stand-in to use ");
     let stand_in = folder.path().join("stand-in");
     let run = ["run", text(&original), "--agent", "random", "--output", text(&stand_in)];
     let output = output(&mut driftworld(&run));

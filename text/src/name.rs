@@ -65,7 +65,7 @@ impl fmt::Display for NameFault {
             Self::Character(c) => write!(f, "the character {}", quoted(c.encode_utf8(&mut [0; 4]))),
             Self::Start(c) => write!(f, "{} at its beginning", quoted(c.encode_utf8(&mut [0; 4]))),
             Self::EndsWithDot => f.write_str("a dot at its end"),
-            Self::NotNormalised => f.write_str("characters that are not in Unicode's form NFC"),
+            Self::NotNormalised => f.write_str("characters that are not in Unicode's composed form (NFC)"),
             Self::Device => f.write_str("a word that Windows keeps for a device"),
         }
     }
@@ -79,7 +79,7 @@ impl NameFault {
             Self::Character(_) => "letters and digits of any script, _, -, + and . in a name",
             Self::Start(_) => "a letter, a digit or _ at the beginning of a name",
             Self::EndsWithDot => "a letter, a digit, _, - or + at the end of a name",
-            Self::NotNormalised => "a name in the form NFC, as keyboards write it",
+            Self::NotNormalised => "a name in NFC, the composed form that keyboards normally produce",
             Self::Device => "a name that can be that of a file everywhere",
         }
     }

@@ -154,7 +154,7 @@ impl LogWriter {
         let folder = rows.parent().unwrap_or(&rows);
         // The rows are removed first: without them the log continues with this block, whatever else remains of it.
         let removed = fs::remove_file(&rows).and_then(|()| fs::remove_dir_all(folder));
-        removed.map_err(MetricsError::io(folder, "take back the block"))
+        removed.map_err(MetricsError::io(folder, "remove the block"))
     }
 
     /// Ends the log: syncs it to disk, and checks that all of it is there. Every record has already been flushed.
@@ -230,7 +230,7 @@ impl LogWriter {
         {
             let found = columns::metric_columns(record).join(", ");
             let found = if found.is_empty() { "none".to_owned() } else { found };
-            return bad(found, format!("also {missing}, a metrics column of the log"));
+            return bad(found, format!("them to include {missing}, a metrics column of the log"));
         }
         Ok(())
     }

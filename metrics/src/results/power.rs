@@ -13,12 +13,12 @@ pub struct MetricPower {
     /// The metric.
     #[serde(flatten)]
     pub headline: Headline,
-    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; the same twice for a
-    /// single agent.
+    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; the same twice if only
+    /// one agent is given.
     pub deviations: [f64; 2],
     /// Lifetimes of each agent that have a value.
     pub lifetimes: [usize; 2],
-    /// The difference of means in question, in the metric's unit.
+    /// The difference between means in question, in the metric's unit.
     pub effect: f64,
     /// The chance that the given lifetimes show that difference, 0..=1; `None` if the lifetimes do not vary: then no test is
     /// possible, and the next two are `None` as well.

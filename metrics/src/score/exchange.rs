@@ -191,7 +191,7 @@ mod tests {
         read_log(&dir).expect("a log")
     }
 
-    /// The performances of each task in each world, or without one, sorted; by the original rows.
+    /// The sorted performances of each task in each world, or in no recurring world; the worlds are those of the original rows.
     fn by_world(blocks: &[Block], performance: &[f64]) -> BTreeMap<(&'static str, Option<u8>), Vec<f64>> {
         let evaluations = blocks.iter().filter(|(learns, ..)| !learns);
         let rows = evaluations.flat_map(|(_, task, rows)| rows.iter().map(|(world, _)| (*task, *world)));

@@ -63,7 +63,7 @@ def lacking(scores, share):
 
 pairs = {
     "runs that move all strata alike": (like_a_run(8, 5, 0.5), like_a_run(6, 5, 0.0)),
-    "scores that are even": (np.round(like_a_run(7, 3, 0.2)), np.round(like_a_run(7, 3, 0.0))),
+    "tied scores": (np.round(like_a_run(7, 3, 0.2)), np.round(like_a_run(7, 3, 0.0))),
     "runs that lack scores": (lacking(like_a_run(6, 4, 0.4), 0.4), lacking(like_a_run(5, 4, 0.0), 0.4)),
     "strata of few runs": (lacking(like_a_run(5, 3, 0.0), 0.6), lacking(like_a_run(5, 3, 0.0), 0.6)),
     "one stratum": (like_a_run(9, 1, 0.3), like_a_run(7, 1, 0.0)),

@@ -122,7 +122,7 @@ impl SpanningTree {
     }
 
     /// The node where the paths up from both ends meet, and the arc on them that is emptied first; ties go to the last on the
-    /// cycle from the apex over the entering arc, which keeps the tree strongly feasible.
+    /// cycle from the apex through the entering arc, which keeps the tree strongly feasible.
     fn blocking(&self, source: usize, sink: usize) -> (usize, Blocking) {
         let (mut a, mut b) = (source, sink);
         let (mut least_a, mut node_a, mut least_b, mut node_b) = (i64::MAX, source, i64::MAX, sink);
@@ -149,7 +149,7 @@ impl SpanningTree {
         (a, Blocking { node, flow, below_sink })
     }
 
-    /// Pushes flow along the half of the cycle from `end` up to the apex: less from nodes of its kind, more from the others.
+    /// Pushes flow along the half of the cycle from `end` up to the apex: arcs above nodes of its kind lose flow, the others gain it.
     fn push(&mut self, end: usize, apex: usize, flow: i64) {
         let kind = end < self.sources;
         let mut index = end;

@@ -57,7 +57,7 @@ impl Draws {
     }
 }
 
-/// A share in 0..1 of `all`, rounded to the nearest integer.
+/// The given share, 0..=1, of `all`, rounded to the nearest integer.
 pub(super) fn share_of(share: f64, all: usize) -> usize {
     ((share * all as f64).round() as usize).min(all)
 }

@@ -32,7 +32,7 @@ impl<'a> Payload<'a> {
             ));
         };
         self.0 = rest;
-        std::str::from_utf8(text).map_err(|error| format!("found a text that is not UTF-8: {error}"))
+        std::str::from_utf8(text).map_err(|error| format!("found a string that is not UTF-8: {error}"))
     }
 
     fn word(&mut self) -> Result<[u8; 4], String> {
@@ -74,7 +74,7 @@ mod tests {
             "found a text that claims 5 bytes, of which there are 1",
         );
         check(&[255, 255, 255, 255, b'a'], "found a text that claims -1 bytes");
-        check(&[1, 0, 0, 0, 0xff], "found a text that is not UTF-8");
+        check(&[1, 0, 0, 0, 0xff], "found a string that is not UTF-8");
         check(&[1, 0], "found 2 bytes, expected 4");
     }
 }

@@ -55,5 +55,5 @@ class Report:
             if finding.advice:
                 lines.append(f"           → {finding.advice}")
         count = sum(finding.outcome == "failed" for finding in self.findings)
-        lines.append(f"  {'all rules are kept' if count == 0 else f'{count} of {len(self.findings)} rules are broken'}")
+        lines.append(f"  {'all rules passed' if count == 0 else f'{count} of {len(self.findings)} rules failed'}")
         return "\n".join(lines)
