@@ -157,8 +157,8 @@ fn remarks_on_worlds_are_shown_for_the_task_that_draws_them() {
       "variants": { "a": {}, "b": {} } }"#;
     fs::write(folder.path().join("odd.json"), odd).unwrap();
     for (arguments, of) in [
-        ("", "in 2 of 2 worlds, of 2 variants"),
-        ("--worlds 7", "in 14 of 14 worlds, of 2 variants"),
+        ("", "in 2 of 2 worlds, from 2 variants"),
+        ("--worlds 7", "in 14 of 14 worlds, from 2 variants"),
     ] {
         let done = output(&mut driftworld_in(
             folder.path(),
