@@ -134,6 +134,6 @@ def test_refused_lifetime_is_refused_again_and_resumes_with_a_frozen_agent(tmp_p
         return run(agent, log=tmp_path / "log", modalities="rgb", size=8, max_steps=6)  # type: ignore[operator]
 
     for _ in range(3):
-        with pytest.raises(CurriculumError, match="block 0: found another action"):
+        with pytest.raises(CurriculumError, match="block 0: found a different action"):
             run_with(FromNumpy)
     assert run_with(Uniform).finished

@@ -125,7 +125,7 @@ def test_single_column_may_be_a_string(tmp_path: Path) -> None:
     LogWriter(tmp_path / "log", "performance").close()
     with LogWriter(tmp_path / "log", resume=True) as log:
         row: dict[str, Any] = {"block_num": 0, "exp_num": 0, "block_type": "train", "task_name": "find_red"}
-        with pytest.raises(MetricsError, match="also performance"):
+        with pytest.raises(MetricsError, match="them to include performance"):
             log.write(**row, reward=1.0)
         log.write(**row, performance=1.0)
     assert read_log(tmp_path / "log").logger_info["metrics_columns"] == ["performance"]
