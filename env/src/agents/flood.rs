@@ -110,3 +110,66 @@ impl Flood {
         Some(here)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Weights of cells; a step costs that of the cell it leads to, and cells of weight 0 are closed.
+    struct Weights(Grid, Vec<u32>);
+
+    impl Ground for Weights {
+        fn grid(&self) -> Grid {
+            self.0
+        }
+
+        fn max_cost(&self) -> u32 {
+            DIAGONAL * self.1.iter().max().unwrap()
+        }
+
+        fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
+            let weight = self.1[from.wrapping_add_signed(step)];
+            (weight > 0).then_some(open * weight)
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn costs_match_repeated_relaxation(
+            drawn in vec(prop_oneof![Just(0_u32), 1_u32..9, Just(4000)], 80),
+            starts in vec(0_usize..80, 1..3),
+            order in vec(0_usize..80, 80),
+        ) {
+            let grid = Grid::over([5.0, 4.0]);
+            let inside: Vec<usize> = (0..grid.num_cells()).filter(|cell| !grid.is_rim(*cell)).collect();
+            prop_assert_eq!(inside.len(), 80);
+            let mut ground = Weights(grid, vec![0; grid.num_cells()]);
+            for (cell, weight) in inside.iter().zip(drawn) {
+                ground.1[*cell] = weight;
+            }
+            let starts: Vec<usize> = starts.into_iter().map(|start| inside[start]).collect();
+            ground.1[starts[0]] = 1;
+            let mut expected = vec![u32::MAX; grid.num_cells()];
+            starts.iter().for_each(|start| expected[*start] = 0);
+            for _ in &inside {
+                for cell in inside.iter().copied().filter(|cell| expected[*cell] < u32::MAX).collect::<Vec<_>>() {
+                    for (step, is_diagonal) in grid.around() {
+                        let other = cell.wrapping_add_signed(step);
+                        if let Some(cost) = ground.cost(cell, step, if is_diagonal { DIAGONAL } else { STRAIGHT }) {
+                            expected[other] = expected[other].min(expected[cell] + cost);
+                        }
+                    }
+                }
+            }
+            // Final whatever was asked before.
+            let mut flood = Flood::default();
+            flood.begin(&ground, &starts.iter().map(|start| *start as u32).collect::<Vec<_>>());
+            for cell in order.into_iter().map(|number| inside[number]) {
+                prop_assert_eq!(flood.reach(&ground, cell), expected[cell]);
+            }
+        }
+    }
+}

@@ -262,6 +262,39 @@ mod tests {
     use super::*;
 
     #[test]
+    fn task_has_gained_beyond_two_standard_errors_or_by_its_experts_level() {
+        let task = |gain: f64, share: Option<f64>| Reached {
+            evaluations: [10.0, 10.0 + gain]
+                .map(|mean| EvaluationCell {
+                    block: 0,
+                    mean,
+                    standard_error: Some(1.0),
+                    num_worlds: 4,
+                    score: None,
+                })
+                .to_vec(),
+            best: Some(1),
+            share,
+            ..Reached::default()
+        };
+        // Two standard errors of the difference are 2 √2 = 2.83.
+        for (gain, share, expected) in [
+            (2.8, None, false),
+            (2.9, None, true),
+            (-5.0, None, false),
+            (0.5, Some(0.21), true),
+            (5.0, Some(0.19), false),
+        ] {
+            assert_eq!(task(gain, share).has_gained(), Some(expected), "{gain} {share:?}");
+        }
+        let never_evaluated_after_learning = Reached {
+            best: None,
+            ..task(5.0, None)
+        };
+        assert_eq!(never_evaluated_after_learning.has_gained(), None);
+    }
+
+    #[test]
     fn standard_error_is_that_of_a_mean() {
         assert_eq!(standard_error(&[1.0]), None);
         assert_eq!(standard_error(&[]), None);
