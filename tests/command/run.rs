@@ -87,11 +87,16 @@ fn stopped_run_keeps_complete_rows_and_says_how_to_continue() {
             rows > 0 && error.contains(&format!("holds {rows} of 36 experiences, all complete")),
             "{error}"
         );
+        let warnings = || fail(0, &["logs", "validate", text(&log)]);
+        warnings().says(&format!(
+            "the log ends after {rows} of the 36 experiences of its scenario"
+        ));
         // The second time, nothing is left to do.
         for _ in 0..2 {
             assert_eq!(succeed(&[&arguments[..], &["--resume"]].concat()), stdout, "{signal}");
             assert_eq!(files(&log), files(&whole), "{signal}");
         }
+        assert!(!warnings().contains("the log ends"), "{}", warnings());
     }
 }
 
