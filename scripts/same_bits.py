@@ -48,7 +48,7 @@ MODALITIES = ["rgb", "depth", "segmentation"]
 
 
 def variants(binary: str, max_variants: int) -> list[str]:
-    """The first `most` variants of each built-in task and of each example world."""
+    """The first `max_variants` variants of each built-in task and of each example world."""
     found = []
     for task in [*BUILT_IN, *(str(ROOT / "examples/worlds" / f"{name}.json") for name in WORLDS)]:
         shown = json.loads(
