@@ -73,7 +73,6 @@ ELSEWHERE = {
 #: Reasons why the planner succeeds in less than 99 % of the worlds.
 REASONS = {
     "find_objects#penalty": "The cubes cost, so that it is best to touch none: nobody succeeds.",
-    "find_objects#long_held": "Each action is held for half a second, in which the planner passes cubes by.",
     "find_objects#slow": "Its time does not always suffice.",
     "moving_object#stings": "The balls cost, so that it is best to touch none: nobody succeeds.",
 }

@@ -12,6 +12,7 @@ mod door_orders;
 mod editing;
 mod energy;
 mod errands;
+mod expert_of_paths;
 mod expert_of_puzzles;
 mod expert_of_what_remains;
 mod expert_of_zones;

@@ -1,6 +1,5 @@
 //! The expert completes every subgoal that it can: unreachable objects do not keep it from others, and it does not touch
-//! objects that end the episode as a failure. In worlds with doors or carriable objects it uses the planner, otherwise the
-//! tour; both are tested.
+//! objects that end the episode as a failure. Tested with and without doors and portable objects.
 
 use driftworld_env::EndedBy;
 use driftworld_spec::{EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft};

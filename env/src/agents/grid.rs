@@ -1,15 +1,5 @@
 //! The arena as a grid of square cells.
 
-/// Maximum number of cells along one side of the grid.
-const MAX_CELLS: usize = 256;
-
-/// Minimum side of a cell in metres.
-const MIN_SIDE: f32 = 0.5;
-
-/// The same limits for a world with narrow corridors.
-const MAX_FINE_CELLS: usize = 1024;
-const MIN_FINE_SIDE: f32 = 0.1;
-
 /// Cells over the arena, row by row, surrounded by a rim of one cell that is never walked on, so that every cell of the arena
 /// has eight neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,33 +13,13 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Cells over an arena with these side lengths in metres.
-    #[cfg(test)]
-    pub(super) fn over(size: [f32; 2]) -> Self {
-        Self::of_side(size, MIN_SIDE)
-    }
-
-    /// A grid over an arena with these side lengths in metres, and cells of side `wanted` if that is smaller than the default side.
-    pub(super) fn fine(size: [f32; 2], wanted: f32) -> Self {
-        let long = size[0].max(size[1]);
-        let plain = (long / MAX_CELLS as f32).max(MIN_SIDE);
-        Self::exact(
-            size,
-            plain.min(wanted.max(long / MAX_FINE_CELLS as f32).max(MIN_FINE_SIDE)),
-        )
-    }
-
-    /// A grid with cells of at least this side in metres; larger if the arena would need too many cells.
-    pub(super) fn of_side(size: [f32; 2], least: f32) -> Self {
-        Self::exact(size, (size[0].max(size[1]) / MAX_CELLS as f32).max(least))
-    }
-
-    fn exact([width, depth]: [f32; 2], side: f32) -> Self {
-        let [columns, rows] = [width, depth].map(|metres| ((metres / side).ceil() as usize).max(1));
+    /// A grid over a rectangle, with cells of this side in metres.
+    pub(super) fn over(low: [f32; 2], high: [f32; 2], side: f32) -> Self {
+        let [columns, rows] = [0, 1].map(|axis| (((high[axis] - low[axis]) / side).ceil() as usize).max(1));
         Self {
             columns,
             rows,
-            corner: [-width / 2.0, -depth / 2.0],
+            corner: low,
             side,
         }
     }
@@ -93,12 +63,6 @@ impl Grid {
         ]
     }
 
-    /// Whether a cell belongs to the rim.
-    pub(super) fn is_rim(&self, cell: usize) -> bool {
-        let (x, y) = (cell % self.stride(), cell / self.stride());
-        x == 0 || y == 0 || x > self.columns || y > self.rows
-    }
-
     /// The cells of the arena whose centres may lie within a rectangle, row by row.
     pub(super) fn within(self, low: [f32; 2], high: [f32; 2]) -> impl Iterator<Item = usize> {
         let [low, high] = [low, high].map(|place| [0, 1].map(|axis| self.index(place[axis], axis)));
@@ -134,13 +98,6 @@ impl Grid {
             (row + 1, true),
         ]
     }
-
-    /// All cells of the rim.
-    pub(super) fn rim(&self) -> impl Iterator<Item = usize> {
-        let (stride, rows) = (self.stride(), self.rows);
-        let ends = (0..stride).chain((rows + 1) * stride..(rows + 2) * stride);
-        ends.chain((1..=rows).flat_map(move |row| [row * stride, (row + 1) * stride - 1]))
-    }
 }
 
 #[cfg(test)]
@@ -148,14 +105,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cell_at_inverts_centre_and_all_other_cells_are_rim() {
+    fn cell_at_inverts_centre() {
         for size in [[50.0, 20.0], [0.3, 7.0], [300.0, 299.0], [0.0, 0.0]] {
-            let grid = Grid::over(size);
-            let mut rim: Vec<usize> = grid.rim().collect();
-            rim.sort_unstable();
-            let expected: Vec<usize> = (0..grid.num_cells()).filter(|cell| grid.is_rim(*cell)).collect();
-            assert_eq!(rim, expected, "{size:?}");
-            for cell in (0..grid.num_cells()).filter(|cell| !grid.is_rim(*cell)) {
+            let half = size.map(|metres: f32| metres / 2.0);
+            let grid = Grid::over(half.map(|metres| -metres), half, 0.5);
+            for cell in grid.within(half.map(|metres| -metres), half) {
                 assert_eq!(grid.cell_at(grid.centre(cell)), cell, "{size:?}");
             }
         }

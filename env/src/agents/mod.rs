@@ -1,16 +1,11 @@
 //! Built-in agents: still, random, on rails (knows the map), scripted, Sarsa (a learner), and trained networks.
 
 mod agent;
-mod flood;
 mod grid;
-mod marks;
-mod nearest;
 mod network;
-mod occupancy;
 mod on_rails;
 mod planner;
 mod random;
-mod route;
 mod sarsa;
 mod script;
 mod scripted;

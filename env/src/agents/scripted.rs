@@ -2,9 +2,9 @@
 
 use driftworld_spec::Object;
 
-use super::route::Route;
+use super::planner::Planner;
 use super::script::{Command, Until, parse};
-use super::steering::{Purpose, avoided, in_space, is_astray, is_in_reach, towards};
+use super::steering::in_space;
 use super::{Agent, OnRailsAgent};
 use crate::EnvError;
 use crate::polygon::distance;
@@ -49,16 +49,16 @@ pub struct ScriptedAgent {
     /// Steps that the current command has taken so far.
     steps: u32,
     walk: Option<Walk>,
-    route: Route,
+    /// Finds the ways of walks. Boxed because it is large.
+    planner: Box<Planner>,
     rails: OnRailsAgent,
 }
 
 /// A walk in progress.
 #[derive(Clone, Debug)]
 struct Walk {
-    /// Index of the object, and its position when the path was found.
+    /// Index of the object.
     object: u32,
-    goal: [f32; 2],
     /// The object's state when the walk began.
     before: ObjectState,
     /// Number of steps in which the agent has interacted within reach.
@@ -76,7 +76,7 @@ impl ScriptedAgent {
             current: 0,
             steps: 0,
             walk: None,
-            route: Route::default(),
+            planner: Box::default(),
             rails: OnRailsAgent::new(),
         })
     }
@@ -111,17 +111,10 @@ impl ScriptedAgent {
 
     fn go(&mut self, environment: &Environment, name: &str, until: Until) -> Option<[f64; 3]> {
         let sim = environment.sim();
-        let mut lead = |object: u32| {
-            let goal = sim.objects()[object as usize].position;
-            let avoided = avoided(sim, Some(object as usize));
-            self.route.lead(sim.world, sim.scene(), goal, &avoided);
-            goal
-        };
         if self.walk.is_none() {
             let object = nearest(environment, name)?;
             self.walk = Some(Walk {
                 object,
-                goal: lead(object),
                 before: sim.objects()[object as usize].clone(),
                 num_interactions: 0,
             });
@@ -130,15 +123,8 @@ impl ScriptedAgent {
         if walk.is_over(environment, until) {
             return None;
         }
-        if is_astray(sim, walk.object, walk.goal) {
-            walk.goal = lead(walk.object);
-        }
-        let purpose = match until {
-            Until::Interacted => Purpose::Interact,
-            Until::Touched | Until::Near(_) => Purpose::Touch,
-        };
-        let numbers = towards(sim, walk.object, purpose, &mut self.route);
-        walk.num_interactions += u32::from(purpose == Purpose::Interact && is_in_reach(sim, walk.object));
+        let numbers = self.planner.approach(sim, walk.object, until == Until::Interacted);
+        walk.num_interactions += u32::from(numbers[2] > 0.5);
         Some(numbers)
     }
 }

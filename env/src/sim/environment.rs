@@ -149,7 +149,7 @@ impl Environment {
         if let Some(resume) = resume.filter(ResumeState::has_begun) {
             resume.apply(&world, &mut state, &mut views);
             if let (Some(policy), Some(progress)) = (&mut rails, &resume.progress.rails) {
-                *policy = OnRailsAgent::resumed(progress, &world, &views.scene);
+                *policy = OnRailsAgent::resumed(progress, &world);
             }
         }
         Self {

@@ -217,18 +217,15 @@ impl Default for ObjectProgress {
 /// The current target of an agent on rails.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-#[schemars(extend("examples" = [{ "target": 0, "goal": [3, 4], "avoided": [1], "patience": 7 }]))]
+#[schemars(extend("examples" = [{ "target": 0, "goal": [3, 4], "patience": 7 }]))]
 pub struct RailsProgress {
     /// Index of the target object.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 99_999))]
     pub target: Option<u32>,
-    /// Position of the target when it was chosen, in metres.
+    /// Position of the target for which the path was found, in metres.
     #[schemars(inner(range(min = -300.0, max = 300.0)))]
     pub goal: [f64; 2],
-    /// Indices of the objects that the path avoids.
-    #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
-    pub avoided: Vec<u32>,
     /// Number of steps spent on this target.
     #[serde(rename = "patience")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]

@@ -1,10 +1,10 @@
-//! [`Floor`]: the cells where the agent's centre can be, divided into rooms by closed doors. `ways.rs` finds paths on it.
+//! [`Floor`]: the cells where the agent's centre can be, divided into rooms by closed doors. `flood.rs` and `ways.rs` find paths on it.
 
-use driftworld_spec::{MotionModel, World, Zone};
+use driftworld_spec::{MotionModel, Object, World, Zone};
 
+use super::flood::{DIAGONAL, STRAIGHT};
 use super::ground_shape::GroundShape;
 use super::zone_costs::{COSTS, ZoneCosts};
-use crate::agents::flood::{DIAGONAL, Ground, STRAIGHT};
 use crate::agents::grid::Grid;
 use crate::agents::steering::fails;
 use crate::polygon::is_near_or_inside;
@@ -12,6 +12,8 @@ use crate::sim::SimRef;
 
 /// Side of a cell in metres, in arenas that are not too large for it.
 const SIDE: f32 = 0.2;
+const SIDE_BESIDE_COSTS: f32 = 0.25;
+const OPEN_SIDE: f32 = 0.4;
 
 /// Minimum and preferred distance of the agent's body from walls, in metres.
 const MIN_CLEARANCE: f32 = 0.04;
@@ -20,13 +22,15 @@ const PREFERRED_CLEARANCE: f32 = 0.25;
 /// Clearance from closed doors, and from objects that fail the episode when touched, in metres. The latter exceeds the distance
 /// that `shield.rs` keeps from them.
 const DOOR_CLEARANCE: f32 = 0.02;
+const OBSTACLE_CLEARANCE: f32 = 0.15;
 const FAILURE_CLEARANCE: f32 = 0.15;
 
 /// Weights of cells: closed, open ground, near walls, near obstacles. Near objects that cost: `COSTS`.
 const CLOSED: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
-const BESIDE_OBSTACLE: u16 = 6;
+pub(super) const BESIDE_OBSTACLE: u16 = 6;
+const OBSTACLE: u16 = 40;
 
 /// Maximum distance beyond contact, in metres, at which a position still counts as beside an object.
 const NEAR: f32 = 0.3;
@@ -58,6 +62,9 @@ pub(super) struct ClosedDoor {
 pub(super) struct Floor {
     pub(super) grid: Grid,
     arena_size: [f32; 2],
+    min_clearance: f32,
+    /// The highest cost of a step.
+    pub(super) max_cost: u32,
     pub(super) body: f32,
     regions: Vec<Vec<[f64; 2]>>,
     zones: Vec<Zone>,
@@ -72,32 +79,35 @@ pub(super) struct Floor {
     pub(super) doors: Vec<ClosedDoor>,
     /// Counts changes, so that plans can tell whether they are out of date.
     pub(super) version: u64,
-    max_cost: u32,
 }
 
-impl Ground for Floor {
-    fn grid(&self) -> Grid {
-        self.grid
+impl Floor {
+    /// Ground with these weights, and nothing on it.
+    #[cfg(test)]
+    pub(super) fn of(grid: Grid, weight: Vec<u16>) -> Self {
+        let max_cost = DIAGONAL * weight.iter().copied().max().map_or(0, u32::from);
+        Self {
+            grid,
+            weight,
+            max_cost,
+            ..Self::default()
+        }
     }
 
-    fn max_cost(&self) -> u32 {
-        self.max_cost
-    }
-
-    // The flood spreads against the walk.
-    fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
+    /// The cost of spreading from a cell to its neighbour at this offset, where a step on open ground costs `open`; `None` if no
+    /// step leads from there. Floods spread against the walk.
+    pub(super) fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
         let other = from.wrapping_add_signed(step);
         let weight = u32::from(self.weight[other]);
         let is_walked = weight > 0 && (open == STRAIGHT || self.is_corner_open(from, step));
         is_walked.then(|| open * weight + self.zone_costs.of(other, from))
     }
-}
 
-impl Floor {
-    /// Updates the floor to the current positions of objects.
-    pub(super) fn update(&mut self, sim: SimRef) {
+    /// Updates the floor to the current positions of objects. Pushable objects are obstacles only if paths should lead around
+    /// them.
+    pub(super) fn update(&mut self, sim: SimRef, around_pushable: bool) {
         let has_moved = self.refresh_walls(sim.world, sim.scene().arena_size());
-        let objects = floor_objects(sim);
+        let objects = floor_objects(sim, around_pushable);
         if !has_moved && objects == self.objects && self.version > 0 {
             return;
         }
@@ -111,7 +121,7 @@ impl Floor {
             let clearance = match weight {
                 _ if is_door => DOOR_CLEARANCE,
                 CLOSED => FAILURE_CLEARANCE,
-                _ => MIN_CLEARANCE,
+                _ => OBSTACLE_CLEARANCE,
             };
             let margin = self.body + clearance;
             let at = shape.at;
@@ -120,6 +130,9 @@ impl Floor {
                 if shape.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
                     self.weight[cell] = match weight {
                         CLOSED => CLOSED,
+                        BESIDE_OBSTACLE if shape.distance(self.grid.centre(cell)) < self.body => {
+                            self.weight[cell].max(OBSTACLE)
+                        }
                         weight => self.weight[cell].max(weight),
                     };
                 }
@@ -145,10 +158,15 @@ impl Floor {
         let regions = || world.obstacles();
         let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
         let zones = &world.environment_params.zones;
-        if is_same && self.zones == *zones && self.regions.iter().map(Vec::as_slice).eq(regions()) {
+        let [low, high] = region(world, arena_size);
+        let grid = Grid::over(low, high, side(world, [low, high], body));
+        if is_same && self.grid == grid && self.zones == *zones && self.regions.iter().map(Vec::as_slice).eq(regions())
+        {
             return false;
         }
-        self.grid = Grid::of_side(arena_size, SIDE);
+        self.grid = grid;
+        self.min_clearance = MIN_CLEARANCE.max(0.3 * self.grid.side() - 0.02);
+        let min_clearance = self.min_clearance;
         (self.arena_size, self.body) = (arena_size, body);
         self.bare.clear();
         self.bare.resize(self.grid.num_cells(), 0);
@@ -158,14 +176,14 @@ impl Floor {
             let room = (0..2)
                 .map(|axis| half[axis] - at[axis].abs())
                 .fold(f32::INFINITY, f32::min);
-            self.bare[cell] = weight_for(room - body);
+            self.bare[cell] = weight_for(room - body, min_clearance);
         }
         for corners in regions() {
             let near = self.grid.near_polygon(corners, body + PREFERRED_CLEARANCE);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
             for cell in near {
                 let at = self.grid.centre(cell);
-                if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + MIN_CLEARANCE) {
+                if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + min_clearance) {
                     self.bare[cell] = 0;
                 } else if self.bare[cell] == OPEN && is_near_or_inside(corners.clone(), at, body + PREFERRED_CLEARANCE)
                 {
@@ -239,18 +257,23 @@ impl Floor {
         self.cell_near(at).map(|cell| self.room[cell])
     }
 
-    /// The open cells in a zone.
+    /// The open cells in a zone; those that no obstacle covers, if there are any.
     pub(super) fn cells_in(&self, zone: &Zone) -> Vec<u32> {
         let Some([low, high]) = zone.bounds() else {
             return Vec::new();
         };
         let [low, high] = [low, high].map(|place| place.map(|metres| metres as f32));
         let is_in = |cell: &usize| self.weight[*cell] > 0 && zone.contains(self.grid.centre(*cell).map(f64::from));
-        self.grid
-            .within(low, high)
-            .filter(is_in)
-            .map(|cell| cell as u32)
-            .collect()
+        let cells: Vec<usize> = self.grid.within(low, high).filter(is_in).collect();
+        let covers = |object: &FloorObject, cell: usize| {
+            object.weight == BESIDE_OBSTACLE && object.shape.distance(self.grid.centre(cell)) < self.body
+        };
+        let is_free = |cell: &&usize| !self.objects.iter().any(|object| covers(object, **cell));
+        let free: Vec<u32> = cells.iter().filter(is_free).map(|cell| *cell as u32).collect();
+        if free.is_empty() {
+            return cells.into_iter().map(|cell| cell as u32).collect();
+        }
+        free
     }
 
     /// The room from which an object can be reached.
@@ -277,8 +300,7 @@ impl Floor {
     }
 
     /// The cells of a room from which the agent can walk straight to an object.
-    pub(super) fn cells_beside(&self, sim: SimRef, object: u32, room: Room) -> Vec<u32> {
-        let shape = GroundShape::of(sim, object as usize);
+    pub(super) fn cells_beside(&self, shape: &GroundShape, room: Room) -> Vec<u32> {
         let reach = shape.reach() + self.body + 0.6;
         let cells = self.grid.near(shape.at, reach);
         let in_room: Vec<(usize, f32)> = cells
@@ -301,24 +323,68 @@ impl Floor {
     }
 }
 
+/// The part of the arena that matters: around everything in the world. All of it if something may move away.
+fn region(world: &World, arena_size: [f32; 2]) -> [[f32; 2]; 2] {
+    let half = arena_size.map(|metres| metres / 2.0);
+    let moves = |object: &Object| {
+        object.motion_model != MotionModel::Stationary
+            || object.pushable.is_some()
+            || object.respawn.as_ref().is_some_and(|back| back.radius > 0.0)
+    };
+    if world.plan().is_none() && world.objects.iter().any(moves) {
+        return [half.map(|metres| -metres), half];
+    }
+    let objects = world.objects.iter().map(|object| object.coordinates);
+    let walls = world.obstacles().flatten().copied();
+    let zones = world.environment_params.zones.iter().filter_map(Zone::bounds).flatten();
+    let agent = std::iter::once(world.agent_params.coordinates);
+    let margin = 3.0 + world.agent_params.agent_width as f32;
+    let (mut low, mut high) = (half, half.map(|metres| -metres));
+    for place in objects.chain(walls).chain(zones).chain(agent) {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(place[axis] as f32 - margin).max(-half[axis]);
+            high[axis] = high[axis].max(place[axis] as f32 + margin).min(half[axis]);
+        }
+    }
+    [low, high]
+}
+
+/// The side of a cell in metres over a region: finer in layouts, and beside doors, things and whatever costs or fails.
+fn side(world: &World, [low, high]: [[f32; 2]; 2], body: f32) -> f32 {
+    let corridor = world.plan().map(|plan| plan.corridor as f32);
+    let narrow = corridor.map_or(f32::INFINITY, |corridor| {
+        ((corridor / 2.0 - body - 0.05).min(body / 1.45)).max(0.1)
+    });
+    let is_used = world.objects.iter().any(Object::is_used);
+    let costs = world.environment_params.zones.iter().any(Zone::is_costly) || !world.rules.failure.is_empty();
+    let plain = match (is_used, costs) {
+        (true, _) => SIDE,
+        (false, true) => SIDE_BESIDE_COSTS,
+        (false, false) => OPEN_SIDE,
+    };
+    let long = (high[0] - low[0]).max(high[1] - low[1]);
+    plain.max(long / 256.0).min(narrow.max(long / 1024.0))
+}
+
 /// The weight of a cell, given the agent's clearance from walls there.
-fn weight_for(clearance: f32) -> u16 {
+fn weight_for(clearance: f32, min_clearance: f32) -> u16 {
     match clearance {
-        clearance if clearance < MIN_CLEARANCE => 0,
+        clearance if clearance < min_clearance => 0,
         clearance if clearance < PREFERRED_CLEARANCE => BESIDE,
         _ => OPEN,
     }
 }
 
 /// The objects that affect paths, in ascending order of index.
-fn floor_objects(sim: SimRef) -> Vec<FloorObject> {
+fn floor_objects(sim: SimRef, around_pushable: bool) -> Vec<FloorObject> {
     let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
     let floor_objects = objects.filter_map(|(index, (object, own))| {
-        let is_still = object.motion_model == MotionModel::Stationary && object.pushable.is_none();
+        let is_still = object.motion_model == MotionModel::Stationary && (around_pushable || object.pushable.is_none());
         if !own.present || own.open || !is_still {
             return None;
         }
         let is_door = object.door.is_some() && object.solid;
+        let shape = GroundShape::of(sim, index);
         let weight = match (own.reward < 0.0, object.solid) {
             _ if is_door || fails(sim.world, object) => CLOSED,
             (true, _) => COSTS,
@@ -327,7 +393,11 @@ fn floor_objects(sim: SimRef) -> Vec<FloorObject> {
         };
         Some(FloorObject {
             object: index as u32,
-            shape: GroundShape::of(sim, index),
+            shape: if object.pushable.is_some() {
+                shape.roughly()
+            } else {
+                shape
+            },
             is_door,
             weight,
         })

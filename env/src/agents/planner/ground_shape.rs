@@ -3,6 +3,9 @@
 use crate::assets::ColliderShape;
 use crate::sim::SimRef;
 
+/// Distance in metres between the points of the grid of pushed bodies.
+const ROUGH: f32 = 0.25;
+
 /// The area of ground that a body covers: a rectangle or a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GroundShape {
@@ -27,6 +30,16 @@ impl GroundShape {
             turn: [libm::sinf(heading), libm::cosf(heading)],
             half,
             radius,
+        }
+    }
+
+    /// The same area as a disc, moved to a nearby point of a coarse grid, so that it changes seldom while the body is pushed.
+    pub(super) fn roughly(self) -> Self {
+        Self {
+            at: self.at.map(|metres| (metres / ROUGH).round() * ROUGH),
+            turn: [0.0, 1.0],
+            half: [0.0; 2],
+            radius: self.half[0].max(self.half[1]) + self.radius,
         }
     }
 

@@ -1,10 +1,11 @@
-//! Plans in worlds with doors, keys, switches and portable things. The planner knows the map and the rules, and acts only as an
-//! episode allows.
+//! Plans the expert's way to what pays: around obstacles, through doors, by keys, switches and portable things. The planner
+//! knows the map and the rules, and acts only as an episode allows.
 //!
 //! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the next subgoal, `subgoal.rs` carries it out, and
-//! `floor.rs`, `zone_costs.rs` and `ways.rs` find the path. The next step depends only on the state of the world and on the
-//! current target, so a resumed episode continues as it would have.
+//! `floor.rs`, `zone_costs.rs`, `flood.rs` and `ways.rs` find the path. The next step depends only on the state of the world
+//! and on the current target, so a resumed episode continues as it would have.
 
+mod flood;
 mod floor;
 mod goals;
 mod ground_shape;
@@ -25,16 +26,24 @@ use ways::Ways;
 use crate::agents::shield::Shield;
 use crate::agents::steering::step_back;
 use crate::agents::tiers::by_worth;
+use crate::polygon::distance;
 use crate::sim::SimRef;
 
 /// Steps after which a goal that was not reached is postponed.
 const PATIENCE: u32 = 3000;
 
-/// Unstick rule `(period, backoff)`: back up for the last steps of each period, longer every time.
-const STUCK: (u32, u32) = (200, 4);
+/// Unstick rule `(period, backoff)`: an agent that does not get ahead backs up in the last steps of each period, longer every
+/// time. After the first period, paths lead around pushable objects.
+const STUCK: (u32, u32) = (100, 4);
+
+/// Steps after which the rule also holds for an agent that gets ahead, since it may walk in a circle.
+const CIRCLING: u32 = 1000;
 
 /// Blocked rule `(first, each)`: from step `first` on a target, look every `each` steps for a portable thing in the way.
 const BLOCKED: (u32, u32) = (40, 5);
+
+/// Distance in metres from the edge of a respawning object at which the agent waits for it.
+const RESPAWN_CLEARANCE: f32 = 1.5;
 
 /// Chooses and follows goals in one episode.
 #[derive(Clone, Debug, Default)]
@@ -68,8 +77,9 @@ struct Situation {
 }
 
 impl Planner {
-    /// Starts an episode. Keeps the floor, which is checked before it is used.
+    /// Starts an episode. Keeps the floor and the paths over it, which are checked before they are used.
     pub(super) fn begin(&mut self) {
+        self.ways.forget();
         *self = Self {
             floor: std::mem::take(&mut self.floor),
             ways: std::mem::take(&mut self.ways),
@@ -91,9 +101,9 @@ impl Planner {
         }
     }
 
-    /// The next action towards the target or a new one, as speed, turn rate and interaction.
+    /// The next action, as speed, turn rate and interaction.
     pub(super) fn steer(&mut self, sim: SimRef, progress: &mut RailsProgress) -> [f64; 3] {
-        self.floor.update(sim);
+        self.floor.update(sim, progress.steps_on_target >= STUCK.0);
         self.ways.avoids_costs = false;
         let goals = goals(sim);
         let find = |target: u32| goals.iter().flatten().copied().find(|goal| goal.object() == target);
@@ -112,7 +122,7 @@ impl Planner {
         if subgoal.is_none() || budget_exhausted {
             if self.is_known_to_be_idle(sim, &goals) {
                 let subgoal = self.idle.as_ref().and_then(|(_, subgoal)| *subgoal);
-                return subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &self.floor, &mut self.ways));
+                return self.act(sim, subgoal, &mut progress.goal);
             }
             goal = self.choose(sim, &goals, &mut progress.given_up);
             progress.target = goal.map(Goal::object);
@@ -132,11 +142,29 @@ impl Planner {
         }
         let (round, more) = STUCK;
         let back = (more * (1 + progress.steps_on_target / round)).min(round / 2);
-        let is_stuck = !is_waiting && progress.steps_on_target % round >= round - back;
-        if is_stuck && subgoal.is_some() {
+        let is_time_to_back = !is_waiting && progress.steps_on_target % round >= round - back;
+        if is_time_to_back && subgoal.is_some() && (progress.steps_on_target > CIRCLING || !gets_ahead(sim)) {
             return step_back(sim);
         }
-        subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &self.floor, &mut self.ways))
+        self.act(sim, subgoal, &mut progress.goal)
+    }
+
+    /// The next action of a subgoal; without one, makes room for objects that respawn.
+    fn act(&mut self, sim: SimRef, subgoal: Option<Subgoal>, place: &mut [f64; 2]) -> [f64; 3] {
+        match subgoal {
+            Some(subgoal) => subgoal.act(sim, &self.floor, &mut self.ways, place),
+            None if blocks_a_respawn(sim) => step_back(sim),
+            None => [0.0; 3],
+        }
+    }
+
+    /// The next step to an object, to touch it or to interact with it.
+    pub(super) fn approach(&mut self, sim: SimRef, object: u32, by_hand: bool) -> [f64; 3] {
+        self.floor.update(sim, false);
+        let room = self.floor.room_at(sim.agent().position).unwrap_or_default();
+        let act = if by_hand { Act::Use } else { Act::Touch };
+        let mut place = sim.objects()[object as usize].position.map(f64::from);
+        Subgoal { object, room, act }.act(sim, &self.floor, &mut self.ways, &mut place)
     }
 
     /// Whether this situation is known to be one in which no goal can be reached.
@@ -176,7 +204,7 @@ impl Planner {
     }
 
     /// The cheapest goal that can be reached, from the first list that has one.
-    fn choose<'a>(&self, sim: SimRef, goals: &[Vec<Goal<'a>>; 3], given_up: &mut Vec<u32>) -> Option<Goal<'a>> {
+    fn choose<'a>(&mut self, sim: SimRef, goals: &[Vec<Goal<'a>>; 3], given_up: &mut Vec<u32>) -> Option<Goal<'a>> {
         let plan = Plan::new(sim, &self.floor, goals)?;
         let is_possible = |goal: &&Goal| plan.first(**goal).is_some();
         let possible = goals
@@ -188,20 +216,39 @@ impl Planner {
             given_up.clear();
         }
         list.retain(|goal| !given_up.contains(&goal.object()));
-        // Fewest doors first, then the straight-line distance divided by the probability that it pays.
+        let num_doors = |goal: &Goal| plan.num_doors_to(goal.object()).unwrap_or(0);
+        let fewest = list.iter().map(num_doors).min()?;
+        list.retain(|goal| num_doors(goal) == fewest);
+        self.nearest(sim, list, fewest > 0)
+    }
+
+    /// The goal with the smallest ratio of path length to probability that it pays; ties go to the first. Behind doors, the
+    /// straight-line distance counts.
+    fn nearest<'a>(&mut self, sim: SimRef, goals: Vec<Goal<'a>>, is_behind_doors: bool) -> Option<Goal<'a>> {
         let here = sim.agent().position;
-        let cost = |goal: &Goal| {
-            let index = goal.object() as usize;
-            let [x, y] = sim.objects()[index].position;
-            let distance = ((x - here[0]).powi(2) + (y - here[1]).powi(2)).sqrt();
-            let probability = sim.world.objects[index].reward_probability.max(0.01) as f32;
-            let doors = plan.num_doors_to(goal.object()).unwrap_or(0);
-            (doors, distance / probability)
-        };
-        list.into_iter().min_by(|a, b| {
-            let (a, b) = (cost(a), cost(b));
-            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-        })
+        let probability = |goal: &Goal| sim.world.objects[goal.object() as usize].reward_probability.max(0.01) as f32;
+        let straight = |goal: &Goal| distance(here, sim.objects()[goal.object() as usize].position);
+        let mut goals: Vec<(f32, Goal)> = goals
+            .into_iter()
+            .map(|goal| (straight(&goal) / probability(&goal), goal))
+            .collect();
+        goals.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        self.ways.look_around(&self.floor, here);
+        let mut best: Option<(f32, Goal)> = None;
+        for (at_least, goal) in goals {
+            if best.is_some_and(|(cost, _)| at_least >= cost) {
+                break;
+            }
+            let cost = if is_behind_doors {
+                at_least
+            } else {
+                self.ways.length_to(sim, &self.floor, goal.object()) / probability(&goal)
+            };
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, goal));
+            }
+        }
+        best.map(|(_, goal)| goal)
     }
 
     /// The first subgoal of a goal; plans again only if the situation has changed.
@@ -244,4 +291,25 @@ impl Planner {
             goals: goals.iter().flatten().map(|goal| goal.object()).collect(),
         }
     }
+}
+
+/// Whether the agent walks forwards, at a tenth of its maximum speed or more.
+fn gets_ahead(sim: SimRef) -> bool {
+    let agent = sim.agent();
+    let heading = agent.heading_deg.to_radians();
+    let [east, north] = agent.velocity;
+    let forwards = east * libm::sinf(heading) + north * libm::cosf(heading);
+    forwards >= sim.world.agent_params.max_linear_speed as f32 / 10.0
+}
+
+/// Whether the agent stands where a paying object would respawn.
+fn blocks_a_respawn(sim: SimRef) -> bool {
+    let here = sim.agent().position;
+    let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
+    let mut absent =
+        objects.filter(|(_, (object, state))| !state.present && object.respawn.is_some() && object.is_target());
+    absent.any(|(index, (object, _))| {
+        let start = object.coordinates.map(|metres| metres as f32);
+        distance(here, start) < RESPAWN_CLEARANCE + sim.body_radius(index)
+    })
 }

@@ -7,6 +7,8 @@ use super::goals::{activating_stimulus, can_interact};
 use super::ground_shape::GroundShape;
 use super::ways::{Delivery, Ways, is_to_collect};
 use crate::agents::steering::{angle_to, is_narrow, seconds, step_back, step_to};
+use crate::agents::tiers::by_worth;
+use crate::ground;
 use crate::polygon::distance;
 use crate::sim::{SimRef, put_down_place, reacting_object};
 
@@ -52,15 +54,17 @@ pub(super) struct Subgoal {
 
 impl Subgoal {
     /// The next action, as speed, turn rate and interaction.
-    pub(super) fn act(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
+    ///
+    /// `place` is the position of the target for which the path was found; it follows the target only roughly.
+    pub(super) fn act(self, sim: SimRef, floor: &Floor, ways: &mut Ways, place: &mut [f64; 2]) -> [f64; 3] {
         match self.act {
             Act::Bring { thing } => self.bring(sim, floor, ways, thing),
             Act::Enter => self.enter(sim, floor, ways),
-            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor, ways),
+            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor, ways, place),
         }
     }
 
-    fn approach(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
+    fn approach(self, sim: SimRef, floor: &Floor, ways: &mut Ways, place: &mut [f64; 2]) -> [f64; 3] {
         let stimulus = match self.act {
             Act::Use => Some(Stimulus::AgentInteract),
             Act::Activate => activating_stimulus(sim, self.object),
@@ -79,13 +83,18 @@ impl Subgoal {
         if counts && sim.state.touches(self.object as usize) {
             return step_back(sim);
         }
-        ways.lead(floor, floor.cells_beside(sim, self.object, self.room));
-        if let Some(point) = ways.next(floor, sim.agent().position) {
-            return walk(sim, point, 0.3);
+        let here = sim.agent().position;
+        let shape = GroundShape::of(sim, self.object as usize);
+        if floor.is_open_to(here, &shape) {
+            ways.avoids_costs = true;
+        } else {
+            ways.lead_to(sim, floor, self.object, self.room, place);
+            if let Some(point) = ways.next(floor, here) {
+                return walk(sim, point, 0.3);
+            }
         }
-        let at = sim.objects()[self.object as usize].position;
-        let gap = GroundShape::of(sim, self.object as usize).distance(sim.agent().position)
-            - sim.world.agent_params.agent_width as f32 / 2.0;
+        let at = shape.at;
+        let gap = shape.distance(here) - floor.body;
         if self.act == Act::Wait && gap < 0.4 || by_hand && gap < 0.15 && !is_facing(sim, at) {
             return [0.0, turn(sim, at), 0.0];
         }
@@ -116,28 +125,25 @@ impl Subgoal {
         is_near && reacting_object(sim, &reached).is_some_and(is_thing)
     }
 
-    /// Walks to a zone, and into it.
+    /// Walks to the nearest zone in this room that is worth as much as the wanted one, and into it.
     fn enter(self, sim: SimRef, floor: &Floor, ways: &mut Ways) -> [f64; 3] {
-        let zone = &sim.world.environment_params.zones[self.object as usize];
-        let cells = floor.cells_in(zone);
-        ways.lead(
-            floor,
-            cells
-                .into_iter()
-                .filter(|cell| floor.room[*cell as usize] == self.room)
-                .collect(),
-        );
+        let zones = sim.world.environment_params.zones.iter();
+        let wanted = &sim.world.environment_params.zones[self.object as usize];
+        let equal = zones.filter(|zone| zone.is_wanted() && by_worth(zone, wanted).is_eq());
+        ways.lead_into(floor, equal.clone(), self.object, self.room);
         let here = sim.agent().position;
         if let Some(point) = ways.next(floor, here) {
             return walk(sim, point, 0.1);
         }
-        if zone.contains(here.map(f64::from)) {
+        if equal.clone().any(|zone| zone.contains(here.map(f64::from))) {
             return [0.0; 3];
         }
         // The centre of the cell is in the zone, but the agent is not.
-        floor
-            .cell_near(here)
-            .map_or([0.0; 3], |cell| walk(sim, floor.grid.centre(cell), 0.1))
+        let middles = equal
+            .filter_map(ground::middle)
+            .map(|at| at.map(|metres| metres as f32));
+        let nearest = middles.min_by(|a, b| distance(here, *a).total_cmp(&distance(here, *b)));
+        nearest.map_or([0.0; 3], |at| walk(sim, at, 0.1))
     }
 
     fn bring(self, sim: SimRef, floor: &Floor, ways: &mut Ways, thing: u32) -> [f64; 3] {
@@ -264,5 +270,5 @@ fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
         // Does not cut corners beside something that costs.
         return step_to(sim, point, past.min(0.05), 5.0);
     }
-    step_to(sim, point, past, 20.0)
+    step_to(sim, point, past, 25.0)
 }

@@ -1,13 +1,25 @@
 //! [`Ways`]: the way to the current targets, and the next point to walk to.
 
-use super::floor::{BESIDE, Floor, FloorObject, Room, squared};
+use driftworld_spec::Zone;
+
+use super::flood::Flood;
+use super::floor::{BESIDE, BESIDE_OBSTACLE, Floor, FloorObject, Room, squared};
 use super::ground_shape::GroundShape;
-use crate::agents::flood::Flood;
+use crate::polygon::distance;
 use crate::sim::{SimRef, reacting_object};
 
 /// How far beyond the agent's body and to its sides an interaction reaches, in metres.
 const REACH: f32 = 1.0;
 const SIDE_REACH: f32 = 0.5;
+
+/// Distance from contact with an object, in metres, at which the ground counts as beside it.
+const BESIDE_OBJECT: f32 = 0.3;
+
+/// Length of the path, in metres, that is searched for the farthest point to walk straight to.
+const LOOK_AHEAD: f32 = 6.0;
+
+/// Fraction of the distance to an object by which the object may move before the path is computed anew.
+const ASTRAY: f32 = 0.2;
 
 /// How and where to put a thing down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +44,14 @@ pub(super) struct Delivery {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ways {
     flood: Flood,
+    /// From the agent, to compare distances.
+    around: Flood,
     /// The floor's version and the target cells.
     destination: Option<(u64, Vec<u32>)>,
+    /// The floor's version, an object, its room and its position, if the targets are cells beside it.
+    object: Option<(u64, u32, Room, [f32; 2])>,
+    /// The floor's version, a zone and its room, if the targets are cells in it and its equals.
+    zone: Option<(u64, u32, Room)>,
     /// The floor's version and the delivery, if the targets are cells from which to put a thing down.
     delivery: Option<(u64, Delivery)>,
     /// Whether the checked part of the last path avoids all zones that cost.
@@ -41,6 +59,11 @@ pub(super) struct Ways {
 }
 
 impl Ways {
+    /// Forgets what the targets are, but not the paths to their cells.
+    pub(super) fn forget(&mut self) {
+        (self.delivery, self.object, self.zone) = (None, None, None);
+    }
+
     /// Leads to the cells from which an agent that faces the object can put the thing down near it.
     pub(super) fn lead_to_delivery(&mut self, sim: SimRef, floor: &Floor, delivery: Delivery) {
         if self.delivery == Some((floor.version, delivery)) {
@@ -55,14 +78,77 @@ impl Ways {
         self.delivery = Some((floor.version, delivery));
     }
 
+    /// Prepares to compare path lengths from a position.
+    pub(super) fn look_around(&mut self, floor: &Floor, from: [f32; 2]) {
+        let start = floor.cell_near(from).map(|cell| cell as u32);
+        self.around.begin(floor, start.as_slice());
+    }
+
+    /// Length in metres of the path from the position looked around from to an object in the same room, where costly ground
+    /// counts as longer.
+    pub(super) fn length_to(&mut self, sim: SimRef, floor: &Floor, object: u32) -> f32 {
+        let here = sim.agent().position;
+        let shape = GroundShape::of(sim, object as usize);
+        if floor.is_open_to(here, &shape) {
+            return distance(here, shape.at);
+        }
+        let Some(room) = floor.room_at(here) else {
+            return f32::INFINITY;
+        };
+        let cells = floor.cells_beside(&shape, room).into_iter();
+        let lengths = cells.map(|cell| {
+            let cost = self.around.reach(floor, cell as usize);
+            cost as f32 / 5.0 * floor.grid.side() + distance(floor.grid.centre(cell as usize), shape.at)
+        });
+        lengths.fold(f32::INFINITY, f32::min)
+    }
+
+    /// Leads to an object, or to `place` where it was a while ago: far away, its movement is followed only roughly.
+    pub(super) fn lead_to(&mut self, sim: SimRef, floor: &Floor, object: u32, room: Room, place: &mut [f64; 2]) {
+        let (here, now) = (sim.agent().position, sim.objects()[object as usize].position);
+        let known = |place: &[f64; 2]| place.map(|metres| metres as f32);
+        let is_near = distance(known(place), now) <= (ASTRAY * distance(here, now) - 0.2).max(0.0);
+        if is_near && self.object == Some((floor.version, object, room, known(place))) {
+            return;
+        }
+        let mut shape = GroundShape::of(sim, object as usize);
+        if is_near {
+            shape.at = known(place);
+        }
+        let mut cells = floor.cells_beside(&shape, room);
+        if cells.is_empty() && is_near {
+            shape.at = now;
+            cells = floor.cells_beside(&shape, room);
+        }
+        *place = shape.at.map(f64::from);
+        self.lead(floor, cells);
+        self.object = Some((floor.version, object, room, shape.at));
+    }
+
+    /// Leads to the cells of a room in these zones, all worth as much as the zone of this index.
+    pub(super) fn lead_into<'a>(
+        &mut self,
+        floor: &Floor,
+        zones: impl Iterator<Item = &'a Zone>,
+        index: u32,
+        room: Room,
+    ) {
+        if self.zone == Some((floor.version, index, room)) {
+            return;
+        }
+        let cells = zones.flat_map(|zone| floor.cells_in(zone));
+        self.lead(floor, cells.filter(|cell| floor.room[*cell as usize] == room).collect());
+        self.zone = Some((floor.version, index, room));
+    }
+
     /// Sets the target cells of paths.
     pub(super) fn lead(&mut self, floor: &Floor, targets: Vec<u32>) {
-        let is_same = |(version, old): &(u64, Vec<u32>)| *version == floor.version && *old == targets;
-        if self.destination.as_ref().is_some_and(is_same) {
+        let is_old = |(version, old): &(u64, Vec<u32>)| *version == floor.version && *old == targets;
+        self.forget();
+        if self.destination.as_ref().is_some_and(is_old) {
             return;
         }
         self.flood.begin(floor, &targets);
-        self.delivery = None;
         self.destination = Some((floor.version, targets));
     }
 
@@ -73,10 +159,12 @@ impl Ways {
         if matches!(self.flood.reach(floor, start), 0 | u32::MAX) {
             return None;
         }
-        let (mut cell, mut best) = (start, floor.grid.centre(start));
+        // An agent beside a wall may have to step away from it first.
+        let is_off = floor.grid.cell_at(from) != start;
+        let (mut cell, mut best) = (start, is_off.then(|| floor.grid.centre(start)));
         self.avoids_costs = true;
-        let mut beside = None;
-        for _ in 0..15 {
+        let num_cells = (LOOK_AHEAD / floor.grid.side()) as usize;
+        for _ in 0..num_cells {
             let around = floor.grid.around().into_iter();
             let open = around.filter(|(step, is_diagonal)| !is_diagonal || floor.is_corner_open(cell, *step));
             let nearest = open
@@ -91,19 +179,16 @@ impl Ways {
             };
             cell = nearest;
             self.avoids_costs &= !floor.zone_costs.is_in_costly_zone(cell);
-            beside.get_or_insert(nearest);
-            if floor.is_clear(from, floor.grid.centre(cell)) {
-                best = floor.grid.centre(cell);
-            } else if best != floor.grid.centre(start) {
+            let to = floor.grid.centre(cell);
+            // The agent may stand anywhere in its cell.
+            let most = self.flood.cost(start) - self.flood.cost(cell) + 5 * u32::from(floor.weight[start]);
+            if best.is_none() || floor.is_clear(from, to, most) {
+                best = Some(to);
+            } else {
                 break;
             }
         }
-        // Straight walks onto costlier ground, such as a zone to enter, do not count as clear, so the agent walks cell by cell
-        // there.
-        if best == floor.grid.centre(start) && floor.grid.cell_at(from) == start {
-            best = beside.map_or(best, |cell| floor.grid.centre(cell));
-        }
-        Some(best)
+        best
     }
 }
 
@@ -152,20 +237,59 @@ impl Floor {
             .collect()
     }
 
-    /// Whether a straight walk is clear; its start may be beside an obstacle.
-    fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
-        let length = squared(from, to).sqrt();
+    /// Whether the agent can walk straight up to an object, around nothing and through no zone that costs.
+    pub(super) fn is_open_to(&self, from: [f32; 2], shape: &GroundShape) -> bool {
+        let length = distance(from, shape.at);
         let num_samples = (length / (self.grid.side() / 2.0)) as usize;
         let start = self.grid.cell_at(from);
-        let max_weight = self.weight[start].max(BESIDE);
-        (1..=num_samples).all(|number| {
+        let max_weight = self.weight[start].clamp(BESIDE, BESIDE_OBSTACLE);
+        for number in 1..=num_samples {
+            let fraction = number as f32 / num_samples as f32;
+            let at = [0, 1].map(|axis| from[axis] + (shape.at[axis] - from[axis]) * fraction);
+            let gap = shape.distance(at) - self.body;
+            if gap < 0.1 {
+                return true;
+            }
+            let cell = self.grid.cell_at(at);
+            // The ground beside the object itself may weigh more.
+            let most = if gap < BESIDE_OBJECT {
+                max_weight.max(BESIDE_OBSTACLE)
+            } else {
+                max_weight
+            };
+            if !(1..=most).contains(&self.weight[cell])
+                || self.zone_costs.of(start, cell) > 0
+                || self.zone_costs.is_in_costly_zone(cell)
+            {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether a straight walk is clear: over open ground, or at no more than this cost, in fifths of a cell. Its start may be
+    /// beside an obstacle.
+    fn is_clear(&self, from: [f32; 2], to: [f32; 2], most: u32) -> bool {
+        let length = distance(from, to);
+        let num_samples = (length / (self.grid.side() / 2.0)).ceil().max(1.0) as usize;
+        let start = self.grid.cell_at(from);
+        let open = self.weight[start].clamp(BESIDE, BESIDE_OBSTACLE);
+        let (mut last, mut is_open, mut weights, mut entering) = (start, true, 0, 0);
+        for number in 1..=num_samples {
             let fraction = number as f32 / num_samples as f32;
             let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * fraction);
             let cell = self.grid.cell_at(at);
-            let weight = self.weight[cell];
-            let is_walked = (1..=max_weight).contains(&weight) && self.zone_costs.of(start, cell) == 0;
-            is_walked || weight == 0 && fraction * length < 0.3
-        })
+            let is_beside_start = fraction * length < 0.3;
+            if self.weight[cell] == 0 && !is_beside_start {
+                return false;
+            }
+            weights += u32::from(self.weight[cell]);
+            entering += self.zone_costs.of(last, cell);
+            is_open &= self.weight[cell] <= open;
+            last = cell;
+        }
+        let cost = 5.0 * weights as f32 * length / num_samples as f32 / self.grid.side();
+        is_open && entering == 0 || cost as u32 + entering <= most
     }
 }
 

@@ -3,8 +3,7 @@
 use driftworld_spec::{World, Zone, ZoneEnd};
 
 use crate::agents::grid::Grid;
-use crate::ground;
-use crate::polygon::{is_near_or_inside, to_f32};
+use crate::polygon::{distance, is_near_or_inside, to_f32};
 
 /// Weight of cells near objects that cost, and factor on the weights of cells in zones that are traps.
 pub(super) const COSTS: u16 = 20;
@@ -50,6 +49,10 @@ impl ZoneCosts {
         let mut zone_costs = Self::default();
         for zone in zones {
             let fails = zone.ends == Some(ZoneEnd::Failure);
+            let is_plain = !fails && !zone.is_costly() && zone.ends.is_none() && zone.teleport.is_none();
+            if is_plain && (zone.reward_per_second, zone.reward_on_entering, zone.speed_factor) == (0.0, 0.0, 1.0) {
+                continue;
+            }
             if fails || zone.is_costly() {
                 avoid(zone, fails, grid, weight);
             }
@@ -103,7 +106,7 @@ impl ZoneCosts {
         }
     }
 
-    /// The highest cost of entering a cell.
+    /// The most that entering zones may cost.
     pub(super) fn max_entry(&self) -> u32 {
         self.entering.iter().copied().max().unwrap_or(0)
     }
@@ -131,9 +134,14 @@ fn seal(grid: Grid) -> f32 {
 
 /// The cells whose centres are in a zone, or nearer to it than `margin` metres.
 fn cells(zone: &Zone, margin: f32, grid: Grid) -> impl Iterator<Item = usize> {
-    let corners = to_f32(&ground::corners(zone));
+    let disc = zone.disc.as_ref();
+    let disc = disc.map(|disc| (disc.center.map(|metres| metres as f32), disc.radius as f32 + margin));
+    let corners = to_f32(zone.polygon.as_deref().unwrap_or_default());
     let bounds = zone.bounds().unwrap_or([[0.0; 2]; 2]);
     let [low, high] = [(0, -margin), (1, margin)].map(|(end, by)| bounds[end].map(|metres| metres as f32 + by));
-    let is_there = move |cell: &usize| is_near_or_inside(corners.iter().copied(), grid.centre(*cell), margin);
+    let is_there = move |cell: &usize| match disc {
+        Some((center, radius)) => distance(grid.centre(*cell), center) < radius,
+        None => is_near_or_inside(corners.iter().copied(), grid.centre(*cell), margin),
+    };
     grid.within(low, high).filter(is_there)
 }

@@ -31,7 +31,7 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let zones = world.environment_params.zones.len();
     problems.extend(beyond("zones", "zone", progress.zones.iter().copied(), zones));
     let rails = progress.rails.iter();
-    let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.avoided).chain(&rails.given_up));
+    let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.given_up));
     problems.extend(beyond("rails", "object", named.copied(), count));
     problems.extend(carried_problems(world, progress));
     problems

@@ -1,0 +1,81 @@
+//! The expert's paths: to the nearest of equal zones, around what covers part of a zone, forwards where nothing is in the way.
+
+use driftworld_spec::{Color, EndCondition, Object, WorldDraft, Zone, ZoneEnd};
+use proptest::prelude::*;
+
+use crate::fixtures::{by_expert, wall_of};
+
+/// A zone to end the episode in success.
+fn exit(at: [f64; 2], radius: f64) -> Zone {
+    let mut zone = Zone::disc(at, radius);
+    zone.ends = Some(ZoneEnd::Success);
+    zone.color = Some(Color([0.2, 0.8, 0.2]));
+    zone
+}
+
+/// An arena of 24 m with a wall across part of the middle.
+fn hall(zones: Vec<Zone>) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [24.0, 24.0];
+    world.environment_params.walls = vec![wall_of([[-6.0, -0.2], [6.0, -0.2], [6.0, 0.2], [-6.0, 0.2]])];
+    world.environment_params.zones = zones;
+    world.agent_params.coordinates = [0.0, -5.0];
+    world.max_steps = 900;
+    world
+}
+
+/// Metres walked to a success, `None` without one.
+fn length(world: WorldDraft) -> Option<f32> {
+    let (mut length, mut last) = (0.0, world.agent_params.coordinates.map(|metres| metres as f32));
+    let (_, end) = by_expert(world.check().expect("the world is valid"), |environment, _| {
+        let here = environment.agent().position;
+        length += ((here[0] - last[0]).powi(2) + (here[1] - last[1]).powi(2)).sqrt();
+        last = here;
+    });
+    end.success.then_some(length)
+}
+
+fn place() -> impl Strategy<Value = [f64; 2]> {
+    (-9.0..9.0_f64, prop_oneof![-9.0..-7.0_f64, 2.0..9.0]).prop_map(|(x, y)| [x, y])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
+
+    /// In any order, and with a wall that is nearer in a straight line than around it.
+    #[test]
+    fn another_equal_zone_makes_no_way_longer(a in place(), b in place()) {
+        let walk = |to: &[[f64; 2]]| length(hall(to.iter().map(|at| exit(*at, 1.0)).collect())).expect("no way is shut");
+        let (alone, both) = ([walk(&[a]), walk(&[b])], walk(&[a, b]));
+        prop_assert_eq!(both, walk(&[b, a]));
+        // Paths over cells are up to 8 % longer than straight ones.
+        prop_assert!(both <= 1.1 * alone[0].min(alone[1]) + 1.0, "{} m, {:?} m to each alone", both, alone);
+    }
+
+    #[test]
+    fn zone_that_a_rock_covers_in_part_is_entered(at in place(), offset in [-1.0..1.0_f64, -1.0..1.0]) {
+        let mut world = hall(vec![exit(at, 1.8)]);
+        let mut rock = Object::new("cube", [at[0] + offset[0], at[1] + offset[1]]);
+        rock.solid = true;
+        world.objects = vec![rock];
+        prop_assert!(length(world).is_some());
+    }
+
+    /// However long the way is, it never backs up.
+    #[test]
+    fn expert_that_gets_ahead_only_gets_nearer(speed in 1.0..8.0_f64, x in -0.5..0.5_f64) {
+        let mut world = WorldDraft::with_objects(vec![Object::new("cube", [x, 40.0])]);
+        world.objects[0].tag = Some("goal".to_owned());
+        world.rules.success = vec![EndCondition::Touch("goal".to_owned())];
+        world.agent_params.coordinates = [0.0, -40.0];
+        world.agent_params.max_linear_speed = speed;
+        world.max_steps = 5000;
+        let mut last = -40.0;
+        let (_, end) = by_expert(world.check().expect("the world is valid"), |environment, _| {
+            let [_, y] = environment.agent().position;
+            assert!(y >= last - 1e-4, "from {last} back to {y}");
+            last = y;
+        });
+        prop_assert!(end.success);
+    }
+}
