@@ -118,7 +118,9 @@ mod tests {
             weights[starts[0]] = 1;
             let floor = Floor::of(grid, weights);
             let mut expected = vec![u32::MAX; grid.num_cells()];
-            starts.iter().for_each(|start| expected[*start] = 0);
+            for start in &starts {
+                expected[*start] = 0;
+            }
             for _ in &inside {
                 for cell in inside.iter().copied().filter(|cell| expected[*cell] < u32::MAX).collect::<Vec<_>>() {
                     for (step, is_diagonal) in grid.around() {

@@ -88,8 +88,8 @@ impl Floor {
         let max_cost = DIAGONAL * weight.iter().copied().max().map_or(0, u32::from);
         Self {
             grid,
-            weight,
             max_cost,
+            weight,
             ..Self::default()
         }
     }
@@ -334,18 +334,26 @@ fn region(world: &World, arena_size: [f32; 2]) -> [[f32; 2]; 2] {
     if world.plan().is_none() && world.objects.iter().any(moves) {
         return [half.map(|metres| -metres), half];
     }
-    let objects = world.objects.iter().map(|object| object.coordinates);
-    let walls = world.obstacles().flatten().copied();
-    let zones = world.environment_params.zones.iter().filter_map(Zone::bounds).flatten();
-    let agent = std::iter::once(world.agent_params.coordinates);
     let margin = 3.0 + world.agent_params.agent_width as f32;
-    let (mut low, mut high) = (half, half.map(|metres| -metres));
-    for place in objects.chain(walls).chain(zones).chain(agent) {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut include = |place: [f64; 2]| {
         for axis in 0..2 {
-            low[axis] = low[axis].min(place[axis] as f32 - margin).max(-half[axis]);
-            high[axis] = high[axis].max(place[axis] as f32 + margin).min(half[axis]);
+            low[axis] = low[axis].min(place[axis]);
+            high[axis] = high[axis].max(place[axis]);
         }
+    };
+    for object in &world.objects {
+        include(object.coordinates);
     }
+    for corners in world.obstacles() {
+        corners.iter().copied().for_each(&mut include);
+    }
+    for bounds in world.environment_params.zones.iter().filter_map(Zone::bounds) {
+        bounds.into_iter().for_each(&mut include);
+    }
+    include(world.agent_params.coordinates);
+    let low = [0, 1].map(|axis| (low[axis] as f32 - margin).max(-half[axis]));
+    let high = [0, 1].map(|axis| (high[axis] as f32 + margin).min(half[axis]));
     [low, high]
 }
 
@@ -384,13 +392,13 @@ fn floor_objects(sim: SimRef, around_pushable: bool) -> Vec<FloorObject> {
             return None;
         }
         let is_door = object.door.is_some() && object.solid;
-        let shape = GroundShape::of(sim, index);
         let weight = match (own.reward < 0.0, object.solid) {
             _ if is_door || fails(sim.world, object) => CLOSED,
             (true, _) => COSTS,
             (false, true) => BESIDE_OBSTACLE,
             (false, false) => return None,
         };
+        let shape = GroundShape::of(sim, index);
         Some(FloorObject {
             object: index as u32,
             shape: if object.pushable.is_some() {
