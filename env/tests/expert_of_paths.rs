@@ -61,7 +61,26 @@ proptest! {
         prop_assert!(length(world).is_some());
     }
 
-    /// However long the way is, it never backs up.
+    /// Smaller than a cell, or along a wall of the arena.
+    #[test]
+    fn tiny_zones_are_entered(at in place(), radius in 0.15..0.4_f64, is_at_wall in any::<bool>(), depth in 0.52..0.9_f64) {
+        let mut zone = exit(at, radius);
+        if is_at_wall {
+            (zone.disc, zone.polygon) = (None, Some(vec![[-3.0, 12.0 - depth], [3.0, 12.0 - depth], [3.0, 12.0], [-3.0, 12.0]]));
+        }
+        prop_assert!(length(hall(vec![zone])).is_some());
+    }
+
+    /// The agent is 1 m wide.
+    #[test]
+    fn gaps_that_the_agent_fits_through_are_passed(x in -4.0..4.0_f64, gap in 1.45..3.0_f64) {
+        let mut world = hall(vec![exit([0.0, 6.0], 1.0)]);
+        let wall = |from: f64, to: f64| wall_of([[from, -0.2], [to, -0.2], [to, 0.2], [from, 0.2]]);
+        world.environment_params.walls = vec![wall(-12.0, x - gap / 2.0), wall(x + gap / 2.0, 12.0)];
+        prop_assert!(length(world).is_some());
+    }
+
+    /// However long the way is, it never backs up in its first 1,000 steps.
     #[test]
     fn expert_that_gets_ahead_only_gets_nearer(speed in 1.0..8.0_f64, x in -0.5..0.5_f64) {
         let mut world = WorldDraft::with_objects(vec![Object::new("cube", [x, 40.0])]);

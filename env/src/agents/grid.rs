@@ -1,4 +1,4 @@
-//! The arena as a grid of square cells.
+//! A part of the arena as a grid of square cells.
 
 /// Cells over the arena, row by row, surrounded by a rim of one cell that is never walked on, so that every cell of the arena
 /// has eight neighbours.

@@ -12,7 +12,7 @@ use crate::sim::{Action, Environment, SimRef};
 /// Reads the world's state, not its images.
 #[derive(Clone, Debug, Default)]
 pub struct OnRailsAgent {
-    /// The target, and the targets given up.
+    /// What a snapshot stores: the target, its place, the steps on it, the targets given up.
     progress: RailsProgress,
     /// Boxed because agents are moved often and this is large.
     planner: Box<Planner>,

@@ -2,7 +2,7 @@
 
 use driftworld_spec::Object;
 
-use super::planner::Planner;
+use super::planner::{Act, Planner};
 use super::script::{Command, Until, parse};
 use super::steering::in_space;
 use super::{Agent, OnRailsAgent};
@@ -123,7 +123,12 @@ impl ScriptedAgent {
         if walk.is_over(environment, until) {
             return None;
         }
-        let numbers = self.planner.approach(sim, walk.object, until == Until::Interacted);
+        let act = match until {
+            Until::Touched => Act::Touch,
+            Until::Interacted => Act::Use,
+            Until::Near(_) => Act::Near,
+        };
+        let numbers = self.planner.approach(sim, walk.object, act);
         walk.num_interactions += u32::from(numbers[2] > 0.5);
         Some(numbers)
     }
@@ -171,6 +176,7 @@ impl Agent for ScriptedAgent {
     fn begin(&mut self, _seed: u64) {
         self.next();
         self.current = 0;
+        self.planner.begin();
     }
 
     fn learns(&self) -> bool {

@@ -34,7 +34,7 @@ pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     };
     let paying = (0..states.len()).filter(pays).filter(is_due).filter(is_safe);
     let (paying_ends, paying_only): (Vec<usize>, Vec<usize>) = paying.partition(ends);
-    let is_left = |index: &usize| states[*index].present && !paying_ends.contains(index);
+    let is_left = |index: &usize| states[*index].present && paying_ends.binary_search(index).is_err();
     let ending = (0..states.len()).filter(ends).filter(is_left).collect();
     [paying_only, paying_ends, ending]
 }

@@ -7,7 +7,7 @@ use super::floor::Floor;
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const DIAGONAL: u32 = 7;
 
-/// More than the cost of any path. A flood goes no farther, so that sums of costs do not overflow.
+/// Paths that cost more count as none, so that sums of costs do not overflow.
 const TOO_FAR: u32 = 1 << 31;
 
 /// Costs of paths from some cells, in fifths of a cell: final for cells below `next`, upper bounds for the others.

@@ -4,9 +4,10 @@ use driftworld_spec::{MotionModel, Object, World, Zone};
 
 use super::flood::{DIAGONAL, STRAIGHT};
 use super::ground_shape::GroundShape;
-use super::zone_costs::{COSTS, ZoneCosts};
+use super::zone_costs::{COSTS, ZoneCosts, costs_of_time};
 use crate::agents::grid::Grid;
 use crate::agents::steering::fails;
+use crate::ground;
 use crate::polygon::is_near_or_inside;
 use crate::sim::SimRef;
 
@@ -62,7 +63,7 @@ pub(super) struct ClosedDoor {
 pub(super) struct Floor {
     pub(super) grid: Grid,
     arena_size: [f32; 2],
-    min_clearance: f32,
+    costs_of_time: [f64; 2],
     /// The highest cost of a step.
     pub(super) max_cost: u32,
     pub(super) body: f32,
@@ -156,7 +157,9 @@ impl Floor {
     fn refresh_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let regions = || world.obstacles();
-        let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
+        let costs_of_time = costs_of_time(world);
+        let is_same = !self.bare.is_empty()
+            && (self.arena_size, self.body, self.costs_of_time) == (arena_size, body, costs_of_time);
         let zones = &world.environment_params.zones;
         let [low, high] = region(world, arena_size);
         let grid = Grid::over(low, high, side(world, [low, high], body));
@@ -165,9 +168,9 @@ impl Floor {
             return false;
         }
         self.grid = grid;
-        self.min_clearance = MIN_CLEARANCE.max(0.3 * self.grid.side() - 0.02);
-        let min_clearance = self.min_clearance;
-        (self.arena_size, self.body) = (arena_size, body);
+        // An agent in a corner of its cell is nearer to walls than its centre.
+        let min_clearance = MIN_CLEARANCE.max(0.3 * self.grid.side() - 0.02);
+        (self.arena_size, self.body, self.costs_of_time) = (arena_size, body, costs_of_time);
         self.bare.clear();
         self.bare.resize(self.grid.num_cells(), 0);
         let half = arena_size.map(|metres| metres / 2.0);
@@ -184,7 +187,7 @@ impl Floor {
             for cell in near {
                 let at = self.grid.centre(cell);
                 if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + min_clearance) {
-                    self.bare[cell] = 0;
+                    self.bare[cell] = CLOSED;
                 } else if self.bare[cell] == OPEN && is_near_or_inside(corners.clone(), at, body + PREFERRED_CLEARANCE)
                 {
                     self.bare[cell] = BESIDE;
@@ -257,19 +260,37 @@ impl Floor {
         self.cell_near(at).map(|cell| self.room[cell])
     }
 
-    /// The open cells in a zone; those that no obstacle covers, if there are any.
+    /// How far beyond contact, in metres, the nearest open cell of an object may be.
+    fn beside(&self) -> f32 {
+        0.6_f32.max(self.grid.side())
+    }
+
+    /// The open cells in a zone; those that no obstacle covers, if there are any. If there are none, the one nearest to its middle.
     pub(super) fn cells_in(&self, zone: &Zone) -> Vec<u32> {
         let Some([low, high]) = zone.bounds() else {
             return Vec::new();
         };
         let [low, high] = [low, high].map(|place| place.map(|metres| metres as f32));
+        let is_near = |object: &&FloorObject| {
+            let (at, reach) = (object.shape.at, object.shape.reach() + self.body);
+            let is_within = |axis: usize| (low[axis] - reach..=high[axis] + reach).contains(&at[axis]);
+            object.weight == BESIDE_OBSTACLE && is_within(0) && is_within(1)
+        };
+        let near: Vec<&FloorObject> = self.objects.iter().filter(is_near).collect();
         let is_in = |cell: &usize| self.weight[*cell] > 0 && zone.contains(self.grid.centre(*cell).map(f64::from));
         let cells: Vec<usize> = self.grid.within(low, high).filter(is_in).collect();
-        let covers = |object: &FloorObject, cell: usize| {
-            object.weight == BESIDE_OBSTACLE && object.shape.distance(self.grid.centre(cell)) < self.body
-        };
-        let is_free = |cell: &&usize| !self.objects.iter().any(|object| covers(object, **cell));
+        let covers = |object: &FloorObject, cell: usize| object.shape.distance(self.grid.centre(cell)) < self.body;
+        let is_free = |cell: &&usize| !near.iter().any(|object| covers(object, **cell));
         let free: Vec<u32> = cells.iter().filter(is_free).map(|cell| *cell as u32).collect();
+        if cells.is_empty() {
+            // It is smaller than a cell, or lies along a wall.
+            let middle = ground::middle(zone).map(|at| at.map(|metres| metres as f32));
+            return middle
+                .and_then(|at| self.cell_near(at))
+                .map(|cell| cell as u32)
+                .into_iter()
+                .collect();
+        }
         if free.is_empty() {
             return cells.into_iter().map(|cell| cell as u32).collect();
         }
@@ -283,7 +304,7 @@ impl Floor {
 
     /// The room of the nearest open cell beside a body, on the given side of it, if any.
     fn room_beside(&self, shape: &GroundShape, side: Option<f32>) -> Option<Room> {
-        let reach = shape.reach() + self.body + 0.6;
+        let reach = shape.reach() + self.body + self.beside();
         let cells = self.grid.near(shape.at, reach);
         let is_beside = |cell: &usize| {
             let [along, across] = shape.own_axes(self.grid.centre(*cell));
@@ -294,14 +315,14 @@ impl Floor {
             .filter(is_beside)
             .map(|cell| (cell, shape.distance(self.grid.centre(cell))));
         let nearest = near
-            .filter(|(_, distance)| *distance < self.body + 0.6)
+            .filter(|(_, distance)| *distance < self.body + self.beside())
             .min_by(|(_, a), (_, b)| a.total_cmp(b));
         nearest.map(|(cell, _)| self.room[cell])
     }
 
     /// The cells of a room from which the agent can walk straight to an object.
     pub(super) fn cells_beside(&self, shape: &GroundShape, room: Room) -> Vec<u32> {
-        let reach = shape.reach() + self.body + 0.6;
+        let reach = shape.reach() + self.body + self.beside();
         let cells = self.grid.near(shape.at, reach);
         let in_room: Vec<(usize, f32)> = cells
             .filter(|cell| self.weight[*cell] > 0 && self.room[*cell] == room)
@@ -365,19 +386,23 @@ fn side(world: &World, [low, high]: [[f32; 2]; 2], body: f32) -> f32 {
     });
     let is_used = world.objects.iter().any(Object::is_used);
     let costs = world.environment_params.zones.iter().any(Zone::is_costly) || !world.rules.failure.is_empty();
-    let plain = match (is_used, costs) {
+    // Large cells would close gaps between plain walls that the agent fits through.
+    let has_gaps = !world.environment_params.walls.is_empty();
+    let plain = match (is_used || has_gaps, costs) {
         (true, _) => SIDE,
         (false, true) => SIDE_BESIDE_COSTS,
         (false, false) => OPEN_SIDE,
     };
     let long = (high[0] - low[0]).max(high[1] - low[1]);
+    // Walls of any thickness are closed: their cells and those that the body overlaps.
+    let plain = plain.min((2.0 * body).max(0.1));
     plain.max(long / 256.0).min(narrow.max(long / 1024.0))
 }
 
 /// The weight of a cell, given the agent's clearance from walls there.
 fn weight_for(clearance: f32, min_clearance: f32) -> u16 {
     match clearance {
-        clearance if clearance < min_clearance => 0,
+        clearance if clearance < min_clearance => CLOSED,
         clearance if clearance < PREFERRED_CLEARANCE => BESIDE,
         _ => OPEN,
     }

@@ -1,4 +1,4 @@
-//! Lists the [`Goal`]s in a world with doors and things: those that pay, then those that end the episode in success. `plan.rs`
+//! Lists the [`Goal`]s in a world: those that pay, then those that end the episode in success. `plan.rs`
 //! finds the subgoals that come first.
 
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Stimulus, World};
@@ -45,7 +45,8 @@ pub(super) fn goals(sim: SimRef) -> [Vec<Goal>; 3] {
     let rank = |goal: &Goal| carried.iter().position(|thing| *thing == goal.object());
     let last = held.iter().copied().max_by_key(rank);
     held.retain(|goal| Some(*goal) == last);
-    let is_touched = |index: &u32| ends_by_touch(sim, *index) && !paying.iter().any(|goal| goal.object() == *index);
+    let is_touched =
+        |index: &u32| ends_by_touch(sim, *index) && paying.binary_search_by_key(index, |goal| goal.object()).is_err();
     others.extend(
         (0..sim.objects().len() as u32)
             .filter(is_touched)

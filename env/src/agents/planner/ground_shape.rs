@@ -3,7 +3,7 @@
 use crate::assets::ColliderShape;
 use crate::sim::SimRef;
 
-/// Distance in metres between the points of the grid of pushed bodies.
+/// Pushable bodies are planned for at multiples of this, in metres.
 const ROUGH: f32 = 0.25;
 
 /// The area of ground that a body covers: a rectangle or a disc.
@@ -33,7 +33,7 @@ impl GroundShape {
         }
     }
 
-    /// The same area as a disc, moved to a nearby point of a coarse grid, so that it changes seldom while the body is pushed.
+    /// A disc of about this size, moved to a nearby point of a coarse grid, so that it changes seldom while the body is pushed.
     pub(super) fn roughly(self) -> Self {
         Self {
             at: self.at.map(|metres| (metres / ROUGH).round() * ROUGH),

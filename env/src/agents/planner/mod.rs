@@ -3,7 +3,7 @@
 //!
 //! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the next subgoal, `subgoal.rs` carries it out, and
 //! `floor.rs`, `zone_costs.rs`, `flood.rs` and `ways.rs` find the path. The next step depends only on the state of the world
-//! and on the current target, so a resumed episode continues as it would have.
+//! and on the stored progress, so a resumed episode continues as it would have.
 
 mod flood;
 mod floor;
@@ -20,7 +20,8 @@ use driftworld_spec::{MotionModel, RailsProgress};
 use floor::Floor;
 use goals::{Goal, goals};
 use plan::Plan;
-use subgoal::{Act, Subgoal, is_blocked_by_a_thing};
+pub(super) use subgoal::Act;
+use subgoal::{Subgoal, is_blocked_by_a_thing};
 use ways::Ways;
 
 use crate::agents::shield::Shield;
@@ -29,7 +30,7 @@ use crate::agents::tiers::by_worth;
 use crate::polygon::distance;
 use crate::sim::SimRef;
 
-/// Steps after which a goal that was not reached is postponed.
+/// Steps after which a goal that was not reached is postponed, if there are others.
 const PATIENCE: u32 = 3000;
 
 /// Unstick rule `(period, backoff)`: an agent that does not get ahead backs up in the last steps of each period, longer every
@@ -158,11 +159,10 @@ impl Planner {
         }
     }
 
-    /// The next step to an object, to touch it or to interact with it.
-    pub(super) fn approach(&mut self, sim: SimRef, object: u32, by_hand: bool) -> [f64; 3] {
+    /// The next step to an object.
+    pub(super) fn approach(&mut self, sim: SimRef, object: u32, act: Act) -> [f64; 3] {
         self.floor.update(sim, false);
         let room = self.floor.room_at(sim.agent().position).unwrap_or_default();
-        let act = if by_hand { Act::Use } else { Act::Touch };
         let mut place = sim.objects()[object as usize].position.map(f64::from);
         Subgoal { object, room, act }.act(sim, &self.floor, &mut self.ways, &mut place)
     }
@@ -210,12 +210,14 @@ impl Planner {
         let possible = goals
             .iter()
             .map(|list| list.iter().filter(is_possible).copied().collect::<Vec<_>>());
-        let mut possible = possible.filter(|list| !list.is_empty());
-        let mut list = possible.next()?;
-        if list.iter().all(|goal| given_up.contains(&goal.object())) {
+        let possible: Vec<Vec<Goal>> = possible.filter(|list| !list.is_empty()).collect();
+        let is_left = |goal: &Goal| !given_up.contains(&goal.object());
+        let mut list = if let Some(list) = possible.iter().find(|list| list.iter().any(is_left)) {
+            list.iter().copied().filter(is_left).collect()
+        } else {
             given_up.clear();
-        }
-        list.retain(|goal| !given_up.contains(&goal.object()));
+            possible.into_iter().next()?
+        };
         let num_doors = |goal: &Goal| plan.num_doors_to(goal.object()).unwrap_or(0);
         let fewest = list.iter().map(num_doors).min()?;
         list.retain(|goal| num_doors(goal) == fewest);

@@ -1,6 +1,6 @@
 //! [`Subgoal`] walks to an object or zone, and acts there: touches, uses, waits or puts something down. `plan.rs` chooses it.
 
-use driftworld_spec::Stimulus;
+use driftworld_spec::{Stimulus, Zone};
 
 use super::floor::{Floor, Room};
 use super::goals::{activating_stimulus, can_interact};
@@ -26,11 +26,13 @@ const MIN_SPACING: f32 = 1.0;
 
 /// What to do at an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Act {
+pub(in crate::agents) enum Act {
     /// Touch it.
     Touch,
     /// Interact with it.
     Use,
+    /// Walk up to it.
+    Near,
     /// Open it, set it off or pick it up.
     Activate,
     /// Stand in front of it until it opens by itself.
@@ -60,7 +62,7 @@ impl Subgoal {
         match self.act {
             Act::Bring { thing } => self.bring(sim, floor, ways, thing),
             Act::Enter => self.enter(sim, floor, ways),
-            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor, ways, place),
+            Act::Touch | Act::Use | Act::Near | Act::Activate | Act::Wait => self.approach(sim, floor, ways, place),
         }
     }
 
@@ -138,8 +140,12 @@ impl Subgoal {
         if equal.clone().any(|zone| zone.contains(here.map(f64::from))) {
             return [0.0; 3];
         }
-        // The centre of the cell is in the zone, but the agent is not.
-        let middles = equal
+        // The centre of the cell is in a zone, but the agent is not.
+        let cell = floor.cell_near(here).map(|cell| floor.grid.centre(cell).map(f64::from));
+        let is_beside = |zone: &&Zone| cell.is_some_and(|centre| zone.contains(centre));
+        let is_any_beside = equal.clone().any(|zone| is_beside(&zone));
+        let beside = equal.filter(|zone| !is_any_beside || is_beside(zone));
+        let middles = beside
             .filter_map(ground::middle)
             .map(|at| at.map(|metres| metres as f32));
         let nearest = middles.min_by(|a, b| distance(here, *a).total_cmp(&distance(here, *b)));
@@ -160,6 +166,7 @@ impl Subgoal {
         let least = (least + ahead).min(most - 0.05);
         let delivery = Delivery {
             to: self.object,
+            at: to,
             room: self.room,
             radius,
             ahead,

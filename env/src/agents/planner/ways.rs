@@ -26,6 +26,8 @@ const ASTRAY: f32 = 0.2;
 pub(super) struct Delivery {
     /// Index of the object to put it near.
     pub(super) to: u32,
+    /// Where that object is.
+    pub(super) at: [f32; 2],
     /// The room of the agent.
     pub(super) room: Room,
     /// Radius of the thing in metres.
@@ -108,12 +110,12 @@ impl Ways {
         let (here, now) = (sim.agent().position, sim.objects()[object as usize].position);
         let known = |place: &[f64; 2]| place.map(|metres| metres as f32);
         let is_near = distance(known(place), now) <= (ASTRAY * distance(here, now) - 0.2).max(0.0);
-        if is_near && self.object == Some((floor.version, object, room, known(place))) {
-            return;
-        }
         let mut shape = GroundShape::of(sim, object as usize);
         if is_near {
             shape.at = known(place);
+            if self.object == Some((floor.version, object, room, shape.at)) {
+                return;
+            }
         }
         let mut cells = floor.cells_beside(&shape, room);
         if cells.is_empty() && is_near {

@@ -40,11 +40,7 @@ impl ZoneCosts {
         if zones.is_empty() {
             return Self::default();
         }
-        let agent = &world.agent_params;
-        let rules = &world.rules;
-        let step = agent.time_step * f64::from(agent.frame_skip.max(1));
-        let second = (-rules.reward_per_second - rules.step_reward / step).max(0.0);
-        let metre = second / agent.max_linear_speed.max(1e-6);
+        let [second, metre] = costs_of_time(world);
         let (mut pay, mut pace) = (vec![0.0_f64; weight.len()], vec![1.0_f64; weight.len()]);
         let mut zone_costs = Self::default();
         for zone in zones {
@@ -115,6 +111,14 @@ impl ZoneCosts {
     pub(super) fn is_in_costly_zone(&self, cell: usize) -> bool {
         self.costs.get(cell).is_some_and(|costs| *costs)
     }
+}
+
+/// What a second costs, and a metre at full speed.
+pub(super) fn costs_of_time(world: &World) -> [f64; 2] {
+    let (agent, rules) = (&world.agent_params, &world.rules);
+    let step = agent.time_step * f64::from(agent.frame_skip.max(1));
+    let second = (-rules.reward_per_second - rules.step_reward / step).max(0.0);
+    [second, second / agent.max_linear_speed.max(1e-6)]
 }
 
 /// Raises the weights in and around a zone; if the zone fails, closes its cells.
