@@ -1,12 +1,12 @@
 //! A part of the arena as a grid of square cells.
 
-/// Cells over the arena, row by row, surrounded by a rim of one cell that is never walked on, so that every cell of the arena
+/// Cells over a rectangle, row by row, surrounded by a rim of one cell that is never walked on, so that every other cell
 /// has eight neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Grid {
     columns: usize,
     rows: usize,
-    /// The arena's south-western corner in metres.
+    /// Its south-western corner in metres.
     corner: [f32; 2],
     /// Side of a cell in metres.
     side: f32,
@@ -39,12 +39,12 @@ impl Grid {
         self.side
     }
 
-    /// The cell at a position; the nearest cell for a position outside the arena.
+    /// The cell at a position; the nearest cell for a position outside.
     pub(super) fn cell_at(&self, [x, y]: [f32; 2]) -> usize {
         self.cell([self.index(x, 0), self.index(y, 1)])
     }
 
-    /// The cell of a column and a row of the arena, each from 0.
+    /// The cell of a column and a row, each from 0, not counting the rim.
     fn cell(&self, [column, row]: [usize; 2]) -> usize {
         (row + 1) * self.stride() + column + 1
     }
@@ -54,7 +54,7 @@ impl Grid {
         ((metres - self.corner[axis]) / self.side).clamp(0.0, most as f32) as usize
     }
 
-    /// Centre of a cell of the arena in metres.
+    /// Centre of a cell in metres.
     pub(super) fn centre(&self, cell: usize) -> [f32; 2] {
         let (x, y) = (cell % self.stride() - 1, cell / self.stride() - 1);
         [
@@ -63,18 +63,18 @@ impl Grid {
         ]
     }
 
-    /// The cells of the arena whose centres may lie within a rectangle, row by row.
+    /// The cells whose centres may lie within a rectangle, row by row.
     pub(super) fn within(self, low: [f32; 2], high: [f32; 2]) -> impl Iterator<Item = usize> {
         let [low, high] = [low, high].map(|place| [0, 1].map(|axis| self.index(place[axis], axis)));
         (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| self.cell([column, row])))
     }
 
-    /// The cells of the arena whose centres may lie within a square around a position, `reach` to each side.
+    /// The cells whose centres may lie within a square around a position, `reach` to each side.
     pub(super) fn near(self, at: [f32; 2], reach: f32) -> impl Iterator<Item = usize> {
         self.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach))
     }
 
-    /// The cells of the arena whose centres may lie in a polygon or within `margin` of it.
+    /// The cells whose centres may lie in a polygon or within `margin` of it.
     pub(super) fn near_polygon(self, corners: &[[f64; 2]], margin: f32) -> impl Iterator<Item = usize> {
         let bound = |axis: usize, sign: f32| {
             let along = corners.iter().map(|corner| corner[axis] as f32 * sign);
@@ -84,7 +84,7 @@ impl Grid {
         self.within(low, high)
     }
 
-    /// Index offsets of the eight cells around a cell of the arena, and whether each is diagonal.
+    /// Index offsets of the eight cells around a cell that is not on the rim, and whether each is diagonal.
     pub(super) fn around(&self) -> [(isize, bool); 8] {
         let row = self.stride() as isize;
         [

@@ -1,4 +1,4 @@
-//! [`Floor`]: the cells where the agent's centre can be, divided into rooms by closed doors. `flood.rs` and `ways.rs` find paths on it.
+//! [`Floor`]: the cells where the agent's centre can be, divided into rooms by closed doors. `flood.rs` and `ways.rs` find paths.
 
 use driftworld_spec::{MotionModel, Object, World, Zone};
 
@@ -11,7 +11,8 @@ use crate::ground;
 use crate::polygon::is_near_or_inside;
 use crate::sim::SimRef;
 
-/// Side of a cell in metres, in arenas that are not too large for it.
+/// Side of a cell in metres where there are doors, things or plain walls; where something costs or fails; and elsewhere. Larger
+/// where the arena is too large for it.
 const SIDE: f32 = 0.2;
 const SIDE_BESIDE_COSTS: f32 = 0.25;
 const OPEN_SIDE: f32 = 0.4;
@@ -20,13 +21,13 @@ const OPEN_SIDE: f32 = 0.4;
 const MIN_CLEARANCE: f32 = 0.04;
 const PREFERRED_CLEARANCE: f32 = 0.25;
 
-/// Clearance from closed doors, and from objects that fail the episode when touched, in metres. The latter exceeds the distance
-/// that `shield.rs` keeps from them.
+/// Clearance from closed doors, from obstacles, and from objects that fail the episode when touched, in metres. The last exceeds
+/// the distance that `shield.rs` keeps from them.
 const DOOR_CLEARANCE: f32 = 0.02;
 const OBSTACLE_CLEARANCE: f32 = 0.15;
 const FAILURE_CLEARANCE: f32 = 0.15;
 
-/// Weights of cells: closed, open ground, near walls, near obstacles. Near objects that cost: `COSTS`.
+/// Weights of cells: closed, open ground, near walls, near obstacles, under obstacles. Near objects that cost: `COSTS`.
 const CLOSED: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
@@ -265,7 +266,8 @@ impl Floor {
         0.6_f32.max(self.grid.side())
     }
 
-    /// The open cells in a zone; those that no obstacle covers, if there are any. If there are none, the one nearest to its middle.
+    /// The open cells in a zone that no obstacle covers; if there are none, its open cells; failing that, the one nearest to its
+    /// middle.
     pub(super) fn cells_in(&self, zone: &Zone) -> Vec<u32> {
         let Some([low, high]) = zone.bounds() else {
             return Vec::new();
@@ -278,23 +280,19 @@ impl Floor {
         };
         let near: Vec<&FloorObject> = self.objects.iter().filter(is_near).collect();
         let is_in = |cell: &usize| self.weight[*cell] > 0 && zone.contains(self.grid.centre(*cell).map(f64::from));
-        let cells: Vec<usize> = self.grid.within(low, high).filter(is_in).collect();
-        let covers = |object: &FloorObject, cell: usize| object.shape.distance(self.grid.centre(cell)) < self.body;
-        let is_free = |cell: &&usize| !near.iter().any(|object| covers(object, **cell));
-        let free: Vec<u32> = cells.iter().filter(is_free).map(|cell| *cell as u32).collect();
+        let cells = self.grid.within(low, high).filter(is_in);
+        let cells: Vec<u32> = cells.map(|cell| cell as u32).collect();
         if cells.is_empty() {
             // It is smaller than a cell, or lies along a wall.
             let middle = ground::middle(zone).map(|at| at.map(|metres| metres as f32));
-            return middle
-                .and_then(|at| self.cell_near(at))
-                .map(|cell| cell as u32)
-                .into_iter()
-                .collect();
+            let nearest = middle.and_then(|at| self.cell_near(at));
+            return nearest.map(|cell| cell as u32).into_iter().collect();
         }
-        if free.is_empty() {
-            return cells.into_iter().map(|cell| cell as u32).collect();
-        }
-        free
+        let covers =
+            |object: &FloorObject, cell: u32| object.shape.distance(self.grid.centre(cell as usize)) < self.body;
+        let is_free = |cell: &u32| !near.iter().any(|object| covers(object, *cell));
+        let free: Vec<u32> = cells.iter().copied().filter(is_free).collect();
+        if free.is_empty() { cells } else { free }
     }
 
     /// The room from which an object can be reached.
@@ -344,15 +342,17 @@ impl Floor {
     }
 }
 
+/// Whether an object moves by itself or can be pushed.
+pub(super) fn can_move(object: &Object) -> bool {
+    object.motion_model != MotionModel::Stationary || object.pushable.is_some()
+}
+
 /// The part of the arena that matters: around everything in the world. All of it if something may move away.
 fn region(world: &World, arena_size: [f32; 2]) -> [[f32; 2]; 2] {
     let half = arena_size.map(|metres| metres / 2.0);
-    let moves = |object: &Object| {
-        object.motion_model != MotionModel::Stationary
-            || object.pushable.is_some()
-            || object.respawn.as_ref().is_some_and(|back| back.radius > 0.0)
-    };
-    if world.plan().is_none() && world.objects.iter().any(moves) {
+    let respawns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
+    let leaves = |object: &Object| can_move(object) || respawns_elsewhere(object);
+    if world.plan().is_none() && world.objects.iter().any(leaves) {
         return [half.map(|metres| -metres), half];
     }
     let margin = 3.0 + world.agent_params.agent_width as f32;
@@ -394,7 +394,7 @@ fn side(world: &World, [low, high]: [[f32; 2]; 2], body: f32) -> f32 {
         (false, false) => OPEN_SIDE,
     };
     let long = (high[0] - low[0]).max(high[1] - low[1]);
-    // Walls of any thickness are closed: their cells and those that the body overlaps.
+    // In cells no larger than the body, no path leads through a wall, however thin.
     let plain = plain.min((2.0 * body).max(0.1));
     plain.max(long / 256.0).min(narrow.max(long / 1024.0))
 }

@@ -15,9 +15,9 @@ mod subgoal;
 mod ways;
 mod zone_costs;
 
-use driftworld_spec::{MotionModel, RailsProgress};
+use driftworld_spec::RailsProgress;
 
-use floor::Floor;
+use floor::{Floor, can_move};
 use goals::{Goal, goals};
 use plan::Plan;
 pub(super) use subgoal::Act;
@@ -267,10 +267,7 @@ impl Planner {
     }
 
     fn situation(&self, sim: SimRef, target: Option<u32>, goals: &[Vec<Goal>; 3]) -> Situation {
-        let moves = |index: &u32| {
-            let object = &sim.world.objects[*index as usize];
-            object.motion_model != MotionModel::Stationary || object.pushable.is_some()
-        };
+        let moves = |index: &u32| can_move(&sim.world.objects[*index as usize]);
         let used = sim
             .world
             .objects

@@ -141,15 +141,14 @@ impl Subgoal {
             return [0.0; 3];
         }
         // The centre of the cell is in a zone, but the agent is not.
-        let cell = floor.cell_near(here).map(|cell| floor.grid.centre(cell).map(f64::from));
-        let is_beside = |zone: &&Zone| cell.is_some_and(|centre| zone.contains(centre));
-        let is_any_beside = equal.clone().any(|zone| is_beside(&zone));
-        let beside = equal.filter(|zone| !is_any_beside || is_beside(zone));
-        let middles = beside
-            .filter_map(ground::middle)
-            .map(|at| at.map(|metres| metres as f32));
-        let nearest = middles.min_by(|a, b| distance(here, *a).total_cmp(&distance(here, *b)));
-        nearest.map_or([0.0; 3], |at| walk(sim, at, 0.1))
+        let centre = floor.cell_near(here).map(|cell| floor.grid.centre(cell).map(f64::from));
+        let is_apart = |zone: &Zone| !centre.is_some_and(|centre| zone.contains(centre));
+        let middles = equal.filter_map(|zone| {
+            let at = ground::middle(zone)?.map(|metres| metres as f32);
+            Some((is_apart(zone), distance(here, at), at))
+        });
+        let nearest = middles.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        nearest.map_or([0.0; 3], |(.., at)| walk(sim, at, 0.1))
     }
 
     fn bring(self, sim: SimRef, floor: &Floor, ways: &mut Ways, thing: u32) -> [f64; 3] {

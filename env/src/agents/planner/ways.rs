@@ -2,7 +2,7 @@
 
 use driftworld_spec::Zone;
 
-use super::flood::Flood;
+use super::flood::{Flood, STRAIGHT};
 use super::floor::{BESIDE, BESIDE_OBSTACLE, Floor, FloorObject, Room, squared};
 use super::ground_shape::GroundShape;
 use crate::polygon::distance;
@@ -100,7 +100,7 @@ impl Ways {
         let cells = floor.cells_beside(&shape, room).into_iter();
         let lengths = cells.map(|cell| {
             let cost = self.around.reach(floor, cell as usize);
-            cost as f32 / 5.0 * floor.grid.side() + distance(floor.grid.centre(cell as usize), shape.at)
+            cost as f32 / STRAIGHT as f32 * floor.grid.side() + distance(floor.grid.centre(cell as usize), shape.at)
         });
         lengths.fold(f32::INFINITY, f32::min)
     }
@@ -183,7 +183,7 @@ impl Ways {
             self.avoids_costs &= !floor.zone_costs.is_in_costly_zone(cell);
             let to = floor.grid.centre(cell);
             // The agent may stand anywhere in its cell.
-            let most = self.flood.cost(start) - self.flood.cost(cell) + 5 * u32::from(floor.weight[start]);
+            let most = self.flood.cost(start) - self.flood.cost(cell) + STRAIGHT * u32::from(floor.weight[start]);
             if best.is_none() || floor.is_clear(from, to, most) {
                 best = Some(to);
             } else {
@@ -290,7 +290,7 @@ impl Floor {
             is_open &= self.weight[cell] <= open;
             last = cell;
         }
-        let cost = 5.0 * weights as f32 * length / num_samples as f32 / self.grid.side();
+        let cost = STRAIGHT as f32 * weights as f32 * length / num_samples as f32 / self.grid.side();
         is_open && entering == 0 || cost as u32 + entering <= most
     }
 }

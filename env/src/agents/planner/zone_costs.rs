@@ -2,6 +2,7 @@
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
+use super::flood::STRAIGHT;
 use crate::agents::grid::Grid;
 use crate::polygon::{distance, is_near_or_inside, to_f32};
 
@@ -56,7 +57,7 @@ impl ZoneCosts {
             let is_trap = zone.ends == Some(ZoneEnd::Success) || zone.teleport.is_some();
             let entry_cost = match -zone.reward_on_entering {
                 pay if pay <= 0.0 => 0.0,
-                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MAX_ENTRY_COST),
+                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * f64::from(STRAIGHT)).min(MAX_ENTRY_COST),
                 _ => MAX_ENTRY_COST,
             };
             if zone.is_costly() {
