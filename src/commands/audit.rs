@@ -16,10 +16,10 @@ use crate::Failure;
 /// Test a curriculum with agents whose scores are known.
 ///
 /// Five simulated agents run the scenario: one that never learns, one that learns while it is evaluated, one that only
-/// remembers what paid at each number, one that learns every variant like its own expert, and one that forgets. The
-/// audit says what the metrics, experts and checks make of each. It fails if they can be fooled: if luck is called
-/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show; and
-/// if the scenario cannot test one of the agents.
+/// remembers what paid best in the experience with the same number, one that learns every variant like its own expert,
+/// and one that forgets. The audit prints what the metrics, experts and checks say of each. It fails if they can be
+/// fooled: if luck counts as transfer, if repeated worlds reward memory, if experts have a different budget, or if
+/// forgetting goes unnoticed. It also fails if the scenario cannot test one of the agents.
 ///
 /// Only rewards are simulated, so no world is rendered. 11,000 experiences take about half a minute. Reward is 100
 /// times a skill from 0 to 1, plus luck of the layout (standard deviation 10) and of the episode (20).
@@ -34,7 +34,7 @@ pub(crate) struct Audit {
     #[arg(long, default_value_t = AuditOptions::default().lifetimes, value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..=100_000))]
     lifetimes: u32,
-    /// Lifetimes of each other agent; few reveal only gross faults.
+    /// Lifetimes of each other agent; a small number reveals only gross faults.
     #[arg(long, default_value_t = AuditOptions::default().repeats, value_name = "N",
         value_parser = clap::value_parser!(u32).range(2..=100_000))]
     repeats: u32,
@@ -74,7 +74,7 @@ impl Audit {
         }
         if failed > 0 {
             return Err(Failure::input(format!(
-                "found {} with other scores than the protocol promises, expected none",
+                "found {} whose scores are not as the protocol promises, expected none",
                 counted(failed, "agent")
             )));
         }

@@ -14,7 +14,7 @@ use crate::{Failure, overwrite};
 
 /// Convert worlds and scenarios of L2Explorer.
 ///
-/// Warnings on standard error name everything that is not taken as it stands. A world of a variant is drawn.
+/// Warnings on standard error name everything that is changed or left out. For a variant, one of its worlds is drawn.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld convert map.json --l2explorer -o world.json
@@ -61,8 +61,8 @@ impl Convert {
         let worlds: BTreeSet<&str> = worlds.filter_map(|regime| regime.world.as_deref()).collect();
         for world in worlds.into_iter().filter(|world| !folder.join(world).is_file()) {
             output::note(format!(
-                "warning: {}: names the world file {world:?}, which is missing; put it at that path from its folder, \
-                 or beside it",
+                "warning: {}: names the world file {world:?}, which is missing; put it at that path relative \
+                 to the scenario, or beside the scenario",
                 self.output.shown()
             ));
         }

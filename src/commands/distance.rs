@@ -18,9 +18,9 @@ use crate::table::table;
 
 /// Measure the distance between two variants or two worlds.
 ///
-/// Two variants of one task are compared by what the task declares, which is parameters where it says nothing, with the
-/// task's own weights and measures. Variants of different tasks are compared by worlds drawn under one seed, and world
-/// files as they are: where objects are, what they pay, how they look. --by compares them by something else.
+/// Two variants of one task are compared as the task declares, by default by parameters, with the task's own weights
+/// and measures. Variants of different tasks are compared by worlds drawn under one seed, and world files directly:
+/// where objects are, what they pay, how they look. --by selects something else to compare by.
 ///
 /// A distance is a sum. By parameters, 1 is one parameter moved over its whole range. By anything else, each part has
 /// its own unit. See docs/similarity.md.
@@ -40,8 +40,8 @@ pub(crate) struct Distance {
     /// What to compare by: parameters, worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or
     /// behavior.
     ///
-    /// Some have several measures, such as occupancy:jaccard or dynamics:bisimulation; docs/similarity.md lists them. By
-    /// default what the task of two variants declares, which is parameters where it says nothing; else worlds.
+    /// Some have several measures, such as occupancy:jaccard or dynamics:bisimulation; docs/similarity.md lists them. The
+    /// default is what the task of both variants declares (parameters if it declares nothing), and worlds for anything else.
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE")]
     by: Option<By>,
     /// Show every component with its measure, value, weight and share of the total.
@@ -49,8 +49,8 @@ pub(crate) struct Distance {
     explain: bool,
     /// Compare this many worlds of each variant.
     ///
-    /// Without it, variants of one task are compared by what the task declares, anything else by 16 worlds of each. By
-    /// pictures and dynamics, 4 worlds of each are compared by default, by placements 64.
+    /// Without it, variants of one task are compared as the task declares, and anything else by 16 worlds of each. By
+    /// pictures and dynamics, the default is 4 worlds of each; by placements, 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
     /// Seed for drawing worlds from variants.
@@ -90,7 +90,7 @@ impl Distance {
         ))?;
         output::line(by_element(&distance))?;
         if self.explain && distance.parts.is_empty() {
-            output::line("\nno parts: it is of the whole decision process")?;
+            output::line("\nno parts: this distance is of the whole decision process")?;
         } else if self.explain {
             output::line("")?;
             output::line(parts(&distance))?;

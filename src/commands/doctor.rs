@@ -12,7 +12,7 @@ use crate::Failure;
 
 /// Report which renderers and features work on this machine.
 ///
-/// Also says what the others need.
+/// Also reports what the others need.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld doctor
@@ -111,7 +111,7 @@ fn as_text(report: &RendererReport, missing: &[String]) -> String {
         (_, true) => "there is no graphics adapter",
         (_, false) => "no GPU works; a software driver is slower than Driftworld's CPU renderer",
     };
-    lines.push(format!("auto  takes {}: {why}", report.auto));
+    lines.push(format!("auto  uses {}: {why}", report.auto));
     for (title, has) in [("has", true), ("lacks", false)] {
         let names: Vec<&str> = FEATURES.iter().filter(|of| of.1 == has).map(|of| of.0).collect();
         if !names.is_empty() {
@@ -201,13 +201,13 @@ mod tests {
             &[
                 "cpu   works: processor (avx2)",
                 "gpu   works: Card 1 (vulkan; discrete graphics card; driver Driver 2)",
-                "auto  takes gpu",
+                "auto  uses gpu",
             ],
         );
-        check(&report(true, None), &["auto  takes cpu: no GPU works"]);
+        check(&report(true, None), &["auto  uses cpu: no GPU works"]);
         check(
             &report(false, Some("is lost")),
-            &["gpu   does not work: is lost: Card 1", "auto  takes cpu"],
+            &["gpu   does not work: is lost: Card 1", "auto  uses cpu"],
         );
     }
 

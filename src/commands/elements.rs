@@ -12,17 +12,18 @@ use crate::Failure;
 
 /// Test what variants change: state, action, reward and so on.
 ///
-/// What is measured stands beside what the task says.
+/// Prints the measured elements beside those that the task declares.
 ///
-/// Worlds of two variants are drawn in pairs, and both run side by side: the same actions from the same states. S is what can
-/// be there, p where things are at the start, A what actions do to the body, T what follows, R what is paid and what ends, O the form of
-/// observations, phi how a state looks. Each variant is compared with the first that the task declares, or A with B.
+/// Worlds of two variants are drawn in pairs and run side by side, with the same actions from the same states. S is
+/// what can exist, p where things are at the start, A what actions do to the body, T what follows, R what is paid and
+/// what ends an episode, O the form of observations, and phi how a state looks. Each variant is compared with the first
+/// one that the task declares, or A with B.
 ///
-/// Of a variant that changes the reward, it is tried whether what is best changes: whether a planner of the first loses in its
-/// worlds, as by `distance --by behavior`. Where it does not, nothing has to be forgotten.
+/// For a variant that changes the reward, the table also says whether the best behaviour changes: whether the first
+/// variant's planner loses reward in its worlds, as with `distance --by behavior`. If not, nothing has to be forgotten.
 ///
-/// A variant is contradicted where an element differs that no parameter that differs `affects`; S covers p, and O covers phi. It is idle
-/// where it sets a parameter that made no difference in --steps. The exit code is 1 if one is contradicted.
+/// A variant is contradicted if an element differs that none of its changed parameters `affects`; S covers p, and O covers phi. It
+/// is idle if it sets a parameter that made no difference within --steps. The exit code is 1 if a variant is contradicted.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld elements find_objects
@@ -94,7 +95,7 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
     ];
     let rows: Vec<Vec<String>> = found.variants.iter().map(row).collect();
     format!(
-        "{}, beside {}:\n{}",
+        "{}, compared with {}:\n{}",
         found.task,
         found.base,
         without_empty(&headings, &rows, &[4, 5, 6, 7])

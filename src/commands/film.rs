@@ -33,17 +33,17 @@ pub(crate) struct Film {
     /// Seed of the agent's random numbers.
     #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true)]
     agent_seed: u64,
-    /// File to write: .gif or .apng for a film, .png for a sheet of the frames that matter.
+    /// File to write: .gif or .apng for a film, .png for a sheet of key frames.
     #[arg(short, long, default_value = "film.gif", value_name = "FILE")]
     output: PathBuf,
-    /// Steps after which the film ends; 3000 if the world has no limit of its own.
+    /// Steps after which the film ends; 3000 if the world has no step limit.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     max_steps: Option<u32>,
-    /// Keep the world and the actions in this file, for `driftworld replay`; replaces a file that is there, as the film does.
+    /// Save the world and the actions to this file, for `driftworld replay`. Like the film, it replaces an existing file.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
-    #[expect(clippy::struct_field_names, reason = "the film options, called so in `replay`, too")]
+    #[expect(clippy::struct_field_names, reason = "the film options, named as in `replay`")]
     film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
@@ -70,7 +70,7 @@ impl Film {
         recording.origin = self.choice.origin();
         if self.max_steps.is_none() && !has_limit && recording.actions.len() == max_steps as usize {
             output::warning(format!(
-                "the world has no limit of steps: the film ends after {max_steps}; --max-steps takes more"
+                "the world has no step limit: the film ends after {max_steps} steps; --max-steps sets another limit"
             ));
         }
         let film = film_choice::write(&self.output, &recording, &catalogue, &self.film)?;

@@ -47,7 +47,7 @@ pub(super) fn grouped(command: Command) -> Command {
     command.help_template(template).after_help(
         "'driftworld COMMAND --help' shows examples of each. A task is a built-in one, or the path of a task spec. A variant is \
          TASK#VARIANT, such as find_objects#red; a family or a pattern, such as find_objects#any_*, stands for its members. \
-         In place of a document, - is standard input, and with -o standard output.",
+         Instead of a file, - stands for standard input, or with -o for standard output.",
     )
 }
 
@@ -62,7 +62,7 @@ fn groups(command: &Command) -> String {
                 one.get_about().map(ToString::to_string).unwrap_or_default(),
             )
         })
-        .chain([("help", "Say more of a command".to_owned())])
+        .chain([("help", "Describe a command in detail".to_owned())])
         .collect();
     let has_group = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
     let others: Vec<&str> = known

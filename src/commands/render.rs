@@ -48,8 +48,7 @@ pub(crate) struct Render {
     /// Maps and natural looks are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
-    /// Draw depth, segmentation and the map alone, in exactly the size asked for: without legends, the map without its
-    /// legend.
+    /// Draw depth, segmentation and the map without their legends, at exactly the requested size.
     #[arg(long)]
     plain: bool,
     /// PNG or SVG file to write.
@@ -82,7 +81,7 @@ enum View {
     Segmentation,
     /// The agent's view in plain and in natural looks, at 84, 160 and 640 pixels.
     Looks,
-    /// An agent's episode, frame by frame: start, end, and what was done between.
+    /// An agent's episode, frame by frame: start, end, and what happened in between.
     Episode,
 }
 
@@ -204,7 +203,7 @@ impl Render {
             ),
         ];
         if !close_ups.is_empty() {
-            rows.push(SheetRow::new("What stands in it", classes.join(", "), close_ups));
+            rows.push(SheetRow::new("Objects in the world", classes.join(", "), close_ups));
         }
         Ok(sheet(&rows, 1))
     }

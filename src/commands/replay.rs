@@ -16,8 +16,9 @@ use crate::Failure;
 
 /// Replay recorded episodes, check them, and draw them.
 ///
-/// Reads what `run --record`, `film --record`, `play --record`, Python's `record=True` and `driftworld-unity --record` wrote. An episode
-/// is run once more from its world and its actions, and must earn what the log says, to the last bit. Without --episode, all are checked.
+/// Reads what `run --record`, `film --record`, `play --record`, Python's `record=True` and `driftworld-unity --record`
+/// wrote. An episode is run again from its world and its actions, and must earn exactly the reward in the log, to the
+/// last bit. Without --episode, all episodes are checked.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld run scenario.json --agent random --output logs/first --record
@@ -33,7 +34,7 @@ pub(crate) struct Replay {
     /// The worker whose episode to replay, if several have one with this number.
     #[arg(long, value_name = "WORKER", requires = "episode")]
     worker: Option<String>,
-    /// File to draw it into: .gif or .apng for a film, .png for a sheet of the frames that matter.
+    /// File to draw the episode into: .gif or .apng for a film, .png for a sheet of key frames.
     #[arg(short, long, value_name = "FILE", requires = "episode")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -16,7 +16,7 @@ use super::output;
 /// It shows metrics, the curriculum and learning curves.
 ///
 /// The report is one HTML file. It loads nothing and needs no network. With several lifetimes, each has a chapter, and
-/// all together have confidence intervals. --against compares two agents.
+/// their aggregates have confidence intervals. --against compares two agents.
 ///
 /// The timeline shows the distance between neighbouring learning blocks. It comes from the matrix given by --distances.
 /// Without one, it is measured from the scenario in the log, for variants of built-in tasks and of tasks given by

@@ -35,8 +35,8 @@ const MAX_JOBS: usize = 256;
 /// byte for byte, as that of an uninterrupted run, except for time stamps. To fix those too, set
 /// DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment.
 ///
-/// On Ctrl-C, SIGTERM or SIGHUP, the run stops at the next step; the exit code is 128 and the signal's number (130,
-/// 143, 129). It also stops if the log is removed, renamed, replaced or truncated, and says what is lost (exit code 1).
+/// On Ctrl-C, SIGTERM or SIGHUP, the run stops at the next step; the exit code is 128 plus the signal's number (130, 143,
+/// 129). It also stops if the log is removed, renamed, replaced or truncated, and reports what is lost (exit code 1).
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails -o logs/first
@@ -56,9 +56,9 @@ pub(crate) struct Run {
     /// Continue the log in the folder, or start a new one if there is none.
     #[arg(long)]
     resume: bool,
-    /// Keep what is done in each experience, in an actions.jsonl beside its rows, for `driftworld replay`.
+    /// Record the actions of each experience, in an actions.jsonl beside its rows, for `driftworld replay`.
     ///
-    /// A log that was begun so goes on so.
+    /// A log started with `--record` keeps recording when resumed.
     #[arg(long)]
     record: bool,
     /// Number of experiences to run in parallel, 1 to 256 [default: one per processor].
@@ -66,9 +66,9 @@ pub(crate) struct Run {
     /// The log does not depend on it.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
-    /// Seed of the agent's random numbers: another seed is a repeat in the same worlds.
+    /// Seed of the agent's random numbers: another seed repeats the run in the same worlds.
     ///
-    /// The log says it. 0 is the run that the scenario has of itself.
+    /// It is stated in the log. 0 is the scenario's default run.
     #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Skip experiences whose worlds cannot be drawn.
@@ -137,7 +137,7 @@ impl Run {
         plan.set_run_seed(self.seed);
         let agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?;
         let agent_note = when(self.agent.is_none(), || {
-            format!(", by {} as no --agent was given", agent.name)
+            format!(", by {} because no --agent was given", agent.name)
         });
         if let Some((what, fingerprint)) = &agent.fingerprint {
             plan.add_fingerprint(what, fingerprint.as_str());
@@ -256,14 +256,14 @@ impl LifetimeRun<'_> {
         if self.records {
             if !journal.records() && journal.num_experiences() > 0 {
                 output::warning(format!(
-                    "{}: found experiences that were not recorded; --record keeps those from {} on",
+                    "{}: found experiences that were not recorded; --record records those from number {} onwards",
                     self.logs.shown(),
                     journal.num_experiences()
                 ));
             }
             journal.record();
         }
-        let bar = output::progress(self.plan.num_experiences(), "living");
+        let bar = output::progress(self.plan.num_experiences(), "running");
         bar.set_position(journal.num_experiences());
         let mut context = RunContext {
             now: &mut || clock.now(),

@@ -51,7 +51,7 @@ pub(crate) struct Sample {
     count: Option<u64>,
     /// Draw only the I-th of N equal parts, 1/4 to 4/4.
     ///
-    /// Together, the parts are the same as one run.
+    /// All parts together equal a single run.
     #[arg(long, value_name = "I/N", requires = "count")]
     shard: Option<Shard>,
     /// How random numbers are spread over the worlds.
@@ -59,7 +59,7 @@ pub(crate) struct Sample {
     sequence: SequenceName,
     /// Drift to this variant of the task.
     ///
-    /// The first world is of the variant given, the last of this one.
+    /// The first world is of the given variant, the last of this one.
     #[arg(long, value_name = "VARIANT", requires = "count")]
     drift_to: Option<String>,
     /// Shape of the drift: linear, cosine, step:N or sawtooth:N.
@@ -67,8 +67,8 @@ pub(crate) struct Sample {
     schedule: DriftSchedule,
     /// Switch at random, not at a fixed point: each value that cannot be interpolated, or the whole variant with `task`.
     ///
-    /// The switch becomes more likely as the drift proceeds. With `task` each world is of one of the two variants, which may be
-    /// of two tasks.
+    /// The switch becomes more likely as the drift proceeds. With `task`, each world is of one of the two variants,
+    /// which may belong to different tasks.
     #[arg(long, requires = "drift_to", num_args = 0..=1, require_equals = true, default_missing_value = "parameter", value_name = "WHAT")]
     mix: Option<Mix>,
     /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
@@ -242,7 +242,7 @@ impl Sample {
 
     fn files(&self, draw: &Draw, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
-        for_each_world(draw, range, "what was written is whole and stays", |index, world| {
+        for_each_world(draw, range, "the files written so far are complete", |index, world| {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
         })?;

@@ -13,7 +13,7 @@ use crate::Failure;
 
 /// Measure the floor and the ceiling of each variant.
 ///
-/// The floor is what agents that know nothing earn, the ceiling what one earns that knows the map.
+/// The floor is the reward of agents that know nothing, the ceiling that of an agent that knows the map.
 ///
 /// Three agents run in the same worlds: one that acts at random, one that stands still, one that knows the map. The
 /// better of the first two is the floor of a variant, the third its ceiling. `driftworld metrics --scales FILE` scales
@@ -76,7 +76,7 @@ fn unlabelled(found: &ScalesFile) -> Option<String> {
         }
     }
     let headings = ["look alike", "ceiling", "finds out", "", "does the same in all", ""];
-    let what = "Best in the mean over those that look alike, of agents that cannot know which they are in.";
+    let what = "Best mean reward over variants that look alike, among agents that are not told which one they are in.";
     (!rows.is_empty()).then(|| format!("{}\n{what}", table(headings, rows, &[1, 2, 4])))
 }
 

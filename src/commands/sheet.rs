@@ -40,10 +40,10 @@ pub(crate) struct Sheet {
     /// Seed of the worlds [default: 0; in a scenario, each block's own].
     #[arg(long, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: Option<u64>,
-    /// Index of each variant's world [default: of the first few, the one that shows most of what the variants are about].
+    /// Index of each variant's world [default: whichever of the first few shows most of what the variants are about].
     #[arg(long)]
     index: Option<u64>,
-    /// Turn the first-person cameras clockwise from the agent's heading, in degrees [default: as shows most].
+    /// Turn the first-person cameras clockwise from the agent's heading, in degrees [default: whichever shows most].
     #[arg(long, allow_negative_numbers = true, value_parser = crate::numbers::degrees)]
     turn: Option<f64>,
     /// Height of each picture in pixels.

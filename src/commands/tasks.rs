@@ -91,7 +91,7 @@ fn list(as_json: bool) -> Result<(), Failure> {
         [group.to_owned(), names.join(", ")]
     });
     output::line(format!("\n{}", table(["more", "tasks"], rows, &[])))?;
-    output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
+    output::line("\n`driftworld tasks show TASK` shows what varies in a task, and what each of its variants changes.")
 }
 
 /// The text up to its first full stop; the whole text if there is none.

@@ -29,15 +29,15 @@ use super::output;
 /// --worlds also draws worlds: of every variant of a task, and of every regime of a scenario. Along a drift, the
 /// variants are checked one by one. A task or scenario fails if one of its worlds cannot be drawn.
 ///
-/// The planner tries the first 100 of those worlds of a task. Where it does not come to a success that there is, a
-/// warning names the worlds: the way may be closed, too hard for it, or not worth going.
+/// The planner tries the first 100 of a task's worlds. If it does not reach a success that exists, a warning names the
+/// worlds: the way may be blocked, too hard for the planner, or not worth taking.
 ///
 /// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
-/// does; of a scenario, all variants of its tasks. A file fails if that contradicts the `affects` of a parameter. A parameter that
-/// made no difference is a warning.
+/// does; for a scenario, all variants of its tasks. A file fails if the result contradicts the `affects` of a
+/// parameter. A parameter that made no difference is a warning.
 ///
-/// What is odd about the worlds of a task is a warning: a zone outside the arena, a switch without a door, a key behind its own
-/// door. The first world of each variant is looked at, or with --worlds as many as are drawn, 100 at most.
+/// Oddities in a task's worlds are warnings: a zone outside the arena, a switch without a door, a key behind its own
+/// door. The first world of each variant is checked, or with --worlds all that are drawn, at most 100.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld validate examples/tasks
@@ -54,10 +54,10 @@ pub(crate) struct Validate {
     /// Also draw this many worlds of each variant and regime, and report failures.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     worlds: u32,
-    /// Also test which elements of the decision process variants change, and fail on what contradicts `affects`.
+    /// Also test which elements of the decision process variants change, and fail if one contradicts `affects`.
     #[arg(long)]
     elements: bool,
-    /// The most steps of an episode with --elements; more steps see what differs later.
+    /// Maximum number of steps of an episode with --elements; more steps reveal later differences.
     #[arg(long, requires = "elements", default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
     /// Seed for worlds of a task's variants. Scenarios have their own.

@@ -15,7 +15,7 @@ use crate::{Failure, overwrite};
 /// Find a variant at a given distance from another.
 ///
 /// Changes one element of the decision process, or the parameters that you name, as few of them as will do. Prints the
-/// values that the variant sets, ready to paste into the task spec, and what stays as it is.
+/// values that the variant sets, ready to paste into the task spec, and those that stay unchanged.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld vary find_objects#red --element reward --distance 0.5
@@ -56,7 +56,7 @@ impl Vary {
         let task = from.task();
         if task.variant_names().contains(&self.name.as_str()) || self.name == DEFAULT_VARIANT {
             return Err(Failure::usage(format!(
-                "--name: found {:?}, which {} already has, expected a name that no variant has; pasted, it would \
+                "--name: found {:?}, which {} already has, expected a name that no variant has; if pasted, it would \
                  replace that one",
                 self.name,
                 task.name()

@@ -33,7 +33,7 @@ pub(super) fn words(text: &str) -> Result<Vec<String>, String> {
         }
     }
     if let Some(open) = quote {
-        return Err(format!("found {open} once, expected it twice: around a word"));
+        return Err(format!("found {open} once, expected it twice, around a word"));
     }
     words.extend(word);
     Ok(words)
@@ -69,7 +69,7 @@ pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
         [] => (1, words),
         [_, _, _] if words.iter().all(|word| number(word).is_ok()) => {
             return Err(format!(
-                "found three numbers, expected how many steps before them; for one step of that action write: step 1 {}",
+                "found three numbers, expected a number of steps before them; for one step of that action write: step 1 {}",
                 words.join(" ")
             ));
         }

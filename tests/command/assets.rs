@@ -206,7 +206,7 @@ fn only_libraries_are_overwritten() {
             1,
             &[["assets", "pack", text(&model), "-o", text(&model)].as_slice(), add].concat(),
         );
-        let expected = "tower.gltf: found a file that is no library, expected a new name or a library";
+        let expected = "tower.gltf: found a file that is not a library, expected a new name or a library";
         assert!(error.contains(expected), "{error}");
         assert_eq!(std::fs::read(&model).expect("it is still there"), before);
     }

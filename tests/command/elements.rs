@@ -23,7 +23,7 @@ fn task(affects: &str) -> String {
 #[test]
 fn declared_and_measured_elements_are_shown_together() {
     let stdout = succeed(&["elements", "blue_red_green", "--worlds", "3"]);
-    assert!(stdout.starts_with("blue_red_green, beside a:"), "{stdout}");
+    assert!(stdout.starts_with("blue_red_green, compared with a:"), "{stdout}");
     let row = |name: &str| {
         let line = stdout.lines().find(|line| line.starts_with(&format!("{name}  ")));
         let words = line.unwrap_or_else(|| panic!("{name} in {stdout}")).split_whitespace();

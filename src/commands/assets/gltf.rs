@@ -23,7 +23,7 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
     if Library::is_meant(&start) {
         return Ok(());
     }
-    let found = "found a file that is no library, expected a new name or a library";
+    let found = "found a file that is not a library, expected a new name or a library";
     Err(Failure::in_file(path, found))
 }
 

@@ -1,5 +1,5 @@
-//! `driftworld assets show`: pictures of a class's models, of one model from all sides in all levels of detail, or of every
-//! class.
+//! `driftworld assets show`: pictures of a class's models, of one model from four sides at each level of detail, or of
+//! every class.
 
 #![expect(clippy::disallowed_methods, reason = "only camera positions for pictures")]
 
@@ -18,7 +18,7 @@ use super::LibraryChoice;
 use crate::Failure;
 use crate::report::picture::{Picture, SheetRow, sheet};
 
-/// Draw the models of a class, one model from four sides at each level of detail, or some of each built-in class.
+/// Draw the models of a class, one model from four sides at each level of detail, or some models of each built-in class.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld assets show -o all.png
@@ -31,7 +31,7 @@ pub(crate) struct Show {
     model: Option<String>,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Width and height of each picture in pixels [default: 220, of all classes 44].
+    /// Width and height of each picture in pixels [default: 220, or 44 for all classes].
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: Option<u32>,
     /// PNG file to write.
@@ -49,7 +49,7 @@ const SHOWN_SIZE: f32 = 4.0;
 const SIZE: u32 = 220;
 const ALBUM_SIZE: u32 = 44;
 
-/// In the overview of all classes: the number of unnamed models shown per class, and of classes side by side.
+/// In the overview of all classes: the number of unnamed models per class, and the number of classes side by side.
 const ALBUM_MODELS: usize = 7;
 const ALBUM_COLUMNS: usize = 2;
 
@@ -101,7 +101,7 @@ impl Show {
         match &self.model {
             Some(model) => self.levels(class, model, &libraries),
             None if names.is_empty() => Err(Failure::input(format!(
-                "class {class:?} is not known; driftworld assets list shows those that are built in"
+                "class {class:?} is not known; driftworld assets list shows the built-in classes"
             ))),
             None => self.models(class, &names),
         }
@@ -133,7 +133,7 @@ impl Show {
         Ok(rows.collect())
     }
 
-    /// One model from four sides, in each of its levels of detail.
+    /// One model from four sides, at each of its levels of detail.
     fn levels(&self, class: &str, name: &str, libraries: &[Library]) -> Result<Vec<SheetRow>, Failure> {
         let is_it = |model: &&LibraryModel| model.class().to_lowercase() == class && model.name() == name;
         // The last library has priority, as in a catalogue.

@@ -20,8 +20,8 @@ pub(crate) use tables::choices;
 ///
 /// A scenario has learning blocks and evaluation blocks.
 ///
-/// By default, the variants lie on the shortest path, and the first one given comes first. Given a whole task, the best first
-/// variant is chosen. --order says another order, and --order named keeps the one given.
+/// By default, the variants follow the shortest path, starting with the first one given, or with the best first variant
+/// of a whole task. --order selects another order, and --order named keeps the one given.
 ///
 /// --probe selects variants that differ in one element of the decision process only, creates more if too few are
 /// declared, and prints the evidence. --step-distance creates a sequence of equal steps. --form arranges the blocks.
@@ -47,7 +47,7 @@ pub(crate) struct Curriculum {
     controls: Option<PathBuf>,
     /// Also write single-task experts of each lifetime into this folder.
     ///
-    /// Each learns one variant, in the worlds and as long as the lifetime does, and is evaluated where the lifetime is.
+    /// Each learns one variant, in the same worlds and for as long as the lifetime, and is evaluated at the same points.
     #[arg(long, value_name = "DIR")]
     experts: Option<PathBuf>,
     /// Replace the files of an earlier curriculum.

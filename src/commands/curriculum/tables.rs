@@ -41,7 +41,7 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
     ))
 }
 
-/// The evidence that each variant is a step from the one before.
+/// The evidence that each variant is one step from the previous one.
 fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     let mut rows = Vec::new();
     for (index, one) in picked.iter().enumerate() {
@@ -54,7 +54,7 @@ fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     let headings = headings().chain(["all together"]);
     let measured = wanted.element.map_or("all together", Element::name);
     Ok(format!(
-        "distances from the variant before, {} ± {} wanted in {}{measured}\n{}\n{}",
+        "distances from the previous variant, {} ± {} wanted in {}{measured}\n{}\n{}",
         wanted.distance,
         wanted.tolerance,
         if wanted.element.is_some() { "the " } else { "" },
@@ -187,8 +187,8 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
     });
     let headings = ["pair", "best changes", "planner of the first loses", "of the second"];
     format!(
-        "{}\nWhat a planner of one variant earns less in worlds of the other than that one's own, in points; where nothing \
-         changes, nothing has to be forgotten.\n",
+        "{}\nHow many points a planner of one variant earns less in worlds of the other than the other's own planner; where \
+         nothing changes, nothing has to be forgotten.\n",
         table(headings, rows, &[2, 3])
     )
 }

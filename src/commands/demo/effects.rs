@@ -47,7 +47,7 @@ pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> 
         "transferred: gained before its own block, by learning others\n\
          learned: gained in its own block\n\
          forgotten: lost after it (-), or still gained (+)\n\
-         Each row adds up to its end.\n"
+         In each row, 'at first' plus the three changes gives 'at the end'.\n"
             .to_owned(),
     ];
     let (known, new): (Vec<Change>, Vec<Change>) = changes(summary).into_iter().partition(|change| change.was_learned);
@@ -194,7 +194,7 @@ b               1           +3      +16          0          20       30
 transferred: gained before its own block, by learning others
 learned: gained in its own block
 forgotten: lost after it (-), or still gained (+)
-Each row adds up to its end.
+In each row, 'at first' plus the three changes gives 'at the end'.
 
 Transfer: learning a raised c from 2 to 9, before c was ever learned.
 Forgetting: learning b lowered a from 10 to 3, although a had been learned.";

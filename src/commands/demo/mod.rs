@@ -41,7 +41,7 @@ const LEARN: u32 = 150;
 
 /// What the output folder contains, as printed at the end.
 const CONTENTS: &str = "  report.html        the lifetime on one page: metrics, curves, worlds
-  contact-sheet.png  each variant as the agent sees it, and from above; alone in maps/ and worlds/
+  contact-sheet.png  each variant as the agent sees it and from above; single maps and worlds are in maps/ and worlds/
   distances.png      how far apart the variants are; the numbers in distances.csv
   scenario.json      the curriculum: driftworld run FILE runs it
   log/, beside/      every experience of the learner and of the others, in l2logger's format
@@ -100,13 +100,13 @@ impl Demo {
 
         output::line(format!(
             "A small learner meets three variants of {TASK}, {LEARN} episodes each, in the order of their distances.\n\
-             Mean reward of each in the evaluations before and after, and of two agents beside it:\n\n{}",
+             Mean reward in the evaluations of each variant, with two other agents for comparison:\n\n{}",
             effects_table(&lifetime, &beside)
         ))?;
         output::line(format!("\n{}", variants_table(&variants, &matrix, &ordering)))?;
         output::line(
-            "\nThe learner (--agent sarsa) sees 169 numbers of a small picture and no map. Yours takes its place from Python \
-             or Rust: docs/curricula.md says how.",
+            "\nThe learner (--agent sarsa) sees a small picture as 169 numbers, and no map. docs/curricula.md shows how \
+             to run your own from Python or Rust.",
         )?;
         output::line(format!("\nEverything is in {}\n\n{CONTENTS}", folder.shown()))
     }

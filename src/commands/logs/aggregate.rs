@@ -31,7 +31,7 @@ pub(crate) struct Aggregate {
     /// File to write: .tsv or .csv, or - for standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Format, if the file name does not tell it.
+    /// Format, if the file name's ending does not imply it.
     #[arg(long, value_parser = documented::<Delimiter>(&FORMATS), value_name = "FORMAT")]
     format: Option<Delimiter>,
     /// Search the folders for logs, up to four levels deep. Links are not followed.

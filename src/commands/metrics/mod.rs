@@ -48,10 +48,10 @@ pub(crate) struct Metrics {
     /// Logs of a second agent. Reports how likely the first agent is to be better.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// Say how many lifetimes of each agent show a difference of this much, in each metric's own unit.
+    /// Report how many lifetimes of each agent it takes to show a difference of this size, in each metric's own unit.
     ///
-    /// With a probability of 80 %, by Welch's t test at 5 %, from how much the lifetimes given vary. Also says the
-    /// smallest difference that so many show.
+    /// With a power of 80 %, by Welch's t test at 5 %, given how much these lifetimes vary. Also reports the smallest
+    /// difference that the given number of lifetimes can show.
     #[arg(long, value_name = "DELTA")]
     power: Option<f64>,
     /// Store the logs as experts in --ste-data, and score nothing.
@@ -68,7 +68,7 @@ pub(crate) struct Metrics {
     intervals: Intervals,
     /// Save the results in this folder.
     ///
-    /// Of one lifetime: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`. Of several, or with -R:
+    /// For one lifetime: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`. For several, or with -R:
     /// `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`, and `NAME_repeats.json` with intervals and
     /// comparisons.
     #[arg(long, value_name = "DIR", conflicts_with = "output_dir", help_heading = "Saving")]
@@ -87,7 +87,7 @@ pub(crate) struct Metrics {
         help_heading = "Saving, as l2metrics spells it"
     )]
     output_dir: Option<PathBuf>,
-    /// Save results under this name [default: the log's; of several, `ll_metrics`].
+    /// Save results under this name [default: the log's name, or `ll_metrics` for several logs].
     #[arg(short, long, value_name = "NAME", help_heading = "Saving, as l2metrics spells it")]
     output: Option<String>,
     /// Draw figures into plots/ in the folder of the results.
@@ -170,7 +170,7 @@ impl Metrics {
 
 /// Stores the logs in the folder.
 ///
-/// If several logs of one task replace stored ones, only the first replaces them; the others are added as further runs.
+/// If several logs of one task replace stored ones, the first replaces them and the others are added as further runs.
 fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result<(), Failure> {
     let mut replaced: Vec<String> = Vec::new();
     for log in logs {

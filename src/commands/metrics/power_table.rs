@@ -37,10 +37,10 @@ pub(super) fn power(found: &[MetricPower]) -> Option<String> {
     let needed = format!("lifetimes for {effect}");
     let headings = ["metric", "sd", "lifetimes", &*power, &*needed, "smallest effect"];
     Some(format!(
-        "{}\nFor a difference of {effect} in the metric's own unit between two agents, by Welch's t test at 5%: its power with the \
-         lifetimes at hand; how many lifetimes of each agent have a power of 80%; and the smallest difference that those at hand \
-         show with 80%. One agent alone is compared with one that varies as much. Of a metric that does not vary between these lifetimes nothing \
-         can be said.",
+        "{}\nFor a difference of {effect} in the metric's own unit between two agents, by Welch's t test at 5%: the power with \
+         these lifetimes; how many lifetimes of each agent have a power of 80%; and the smallest difference that these lifetimes \
+         show with a power of 80%. A single agent is compared with one that varies as much. Nothing can be said about a metric \
+         that does not vary between these lifetimes.",
         table(headings, rows, &[1, 2, 3, 4, 5])
     ))
 }

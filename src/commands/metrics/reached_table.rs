@@ -54,14 +54,14 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     }
     if has_expert {
         notes.push(format!(
-            "Below {:.0}% of the {} a task was never learned, and its maintenance and transfer say nothing.",
+            "A task that never reaches {:.0}% of its {} counts as never learned; ignore its maintenance and transfer.",
             100.0 * LEARNED_SHARE,
             if has_own { "expert" } else { "ceiling" }
         ));
     }
     if evaluated().count() > MOST_ROWS {
         notes.push(format!(
-            "And {} tasks more: see --json.",
+            "{} more tasks are in the output of --json.",
             evaluated().count() - MOST_ROWS
         ));
     }
@@ -101,8 +101,8 @@ fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
             scores.map(|scores| scores.iter().sum::<f64>() / scores.len().max(1) as f64)
         };
         Some(format!(
-            "{} look alike. Without a label the best known agent has {} of the way in their mean, and one that does the \
-             same in all, as without memory, {}.",
+            "{} look alike. Without a label, the best known agent gets {} of the way on average, and one that behaves \
+             alike in all, for lack of memory, {}.",
             driftworld_text::one_line(
                 among
                     .iter()
@@ -195,15 +195,15 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
     let lag = when(shown().any(|(_, curve)| curve.lag.is_some()), || {
-        " lag: learning experiences of any task, from where the task was first learned (if never, from its first \
-         evaluation) until half of the later gain."
+        " lag: learning experiences, of any task, from the start of learning this task (or else from its first \
+         evaluation) until half of its eventual gain."
             .to_owned()
     });
     let regret = when(shown().any(|(_, curve)| curve.regret.is_some()), || {
-        " regret: expert, or else ceiling, less curve while the task was present.".to_owned()
+        " regret: expert, or else ceiling, minus curve while the task was present.".to_owned()
     });
     Some(format!(
-        "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last.{lag}{regret}",
+        "{}\nFrom evaluation curves alone. area: mean height. forgetting: highest minus last.{lag}{regret}",
         without_empty(&headings, &rows, &[1, 2, 3, 4])
     ))
 }

@@ -62,7 +62,7 @@ fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     }
     if scores.nothing_was_learned() {
         metrics.push_str(
-            "\nnote: nothing was learned: no task is better after it was learned than before, so that its maintenance and transfer say nothing",
+            "\nnote: nothing was learned: no task is better after learning than before, so ignore maintenance and transfer",
         );
     }
     for note in scores.notes.iter().chain(&scores.cautions) {
@@ -84,8 +84,8 @@ fn beside_null(band: Option<NullBand>) -> [String; 2] {
 /// Explains null bands, and how these were computed.
 fn what_bands_are(scores: &LifetimeMetrics) -> String {
     let rows = match scores.null_bands.values().next().map(|band| band.exchanged) {
-        Some(Exchanged::Positions) => "rows by their place in the evaluation, as the log names no world twice,",
-        Some(Exchanged::WorldsAndPositions) => "rows of each world, or by place where no world is named twice,",
+        Some(Exchanged::Positions) => "rows by their position in the evaluation, because the log names no world twice,",
+        Some(Exchanged::WorldsAndPositions) => "rows of each world, or by position if no world is named twice,",
         _ => "rows of each world",
     };
     format!(
@@ -114,7 +114,7 @@ fn scaled(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     );
     if !own.is_empty() {
         let tasks = one_line(own.join(", ")).to_string();
-        text.push_str(" No floor below a ceiling is known of these, which are scaled by this lifetime's own range: ");
+        text.push_str(" These have no known floor below a ceiling, so they are scaled by this lifetime's own range: ");
         text.push_str(&tasks);
         text.push('.');
     }
@@ -288,8 +288,8 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     if metrics.iter().any(|row| row.null.is_some()) {
         lines.push(format!(
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
-             {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named where the {} \
-             of the IQM is beside no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
+             {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named if the {} of \
+             the IQM excludes no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
              most {MAX_P_VALUE}. no null: permuting evaluations does not test this metric.",
             if few { &t } else { share }
         ));

@@ -42,7 +42,7 @@ pub(crate) struct New {
 pub(crate) struct Export {
     /// The built-in task; `driftworld tasks` lists them.
     task: String,
-    /// Give it another name, under which its worlds are others, too.
+    /// Give the task another name; its worlds then differ, too.
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// File to write, or - for standard output [default: NAME.json].

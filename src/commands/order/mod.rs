@@ -22,11 +22,11 @@ use crate::{Failure, matrix_file, overwrite};
 
 /// Order variants by their distances.
 ///
-/// Variants of one task are compared by what the task declares, which is parameters where it says nothing. --by compares
-/// them by something else, as variants of several tasks have to be.
+/// Variants of one task are compared as the task declares, by default by parameters. --by selects something else to
+/// compare by, as variants of several tasks require.
 ///
-/// The order starts with the variant named first, unless --start names another. If you name one whole task, it starts with
-/// whichever is best.
+/// The order starts with the variant named first, unless --start names another. If you name one whole task, it starts
+/// with the best choice.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects
@@ -44,8 +44,8 @@ pub(crate) struct Order {
     ordering: OrderRequest,
     /// What to compare variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
     ///
-    /// By default what the task declares, which is parameters where it says nothing. Variants of several tasks need
-    /// another measure than parameters.
+    /// The default is what the task declares, or parameters if it declares nothing. Variants of several tasks need a
+    /// measure other than parameters.
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "from_matrix")]
     by: Option<By>,
     /// Compare this many worlds of each variant, drawn under seed 0 [default: 16; 4 by pictures and
@@ -125,7 +125,7 @@ impl Order {
             ordering.mean_step()
         ))?;
         output::line(format!(
-            "shorter than it: {:.1} % of {NUM_RANDOM_ORDERS} random orders",
+            "{:.1} % of {NUM_RANDOM_ORDERS} random orders are shorter",
             100.0 * share_of_shorter_orders(&matrix, &ordering, self.seed)
         ))
     }

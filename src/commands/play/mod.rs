@@ -28,12 +28,12 @@ use crate::Failure;
 const FRAME: Duration = Duration::from_millis(50);
 
 /// Text of the last line.
-const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: again · q: quit";
+const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: restart · q: quit";
 
 /// Walk through a world with the keys, in a terminal.
 ///
-/// Arrows or wasd walk and turn, the space bar uses what is ahead, v looks from above, r begins again, q quits. The world goes on in its
-/// own time; where its actions cannot do nothing, it waits for keys.
+/// Arrows or wasd walk and turn, the space bar uses the object ahead, v changes the view, r restarts, q quits. The
+/// world runs in simulated time; if none of its actions does nothing, it waits for keys.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld play find_objects#red
@@ -44,10 +44,10 @@ pub(crate) struct Play {
     choice: WorldRequest,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Steps per second, 20 at most [default: the world's own time].
+    /// Steps per second, at most 20 [default: simulated time].
     #[arg(long, value_name = "RATE", value_parser = rate)]
     fps: Option<f64>,
-    /// Keep what was played in this file, for `driftworld replay`.
+    /// Save the played episodes to this file, for `driftworld replay`.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).

@@ -26,7 +26,7 @@ impl RawTerminal {
     pub(super) fn open() -> Result<Self, Failure> {
         let refused = |stream: &str| {
             Failure::input(format!(
-                "{stream}: found no terminal, expected one of true colour to play in; to film an agent in its place: driftworld film"
+                "{stream}: found no terminal, expected one with true colour to play in; to film an agent instead: driftworld film"
             ))
         };
         if !io::stdout().is_terminal() {
@@ -42,7 +42,7 @@ impl RawTerminal {
     fn take() -> Result<Self, Failure> {
         static HOOK: Once = Once::new();
         let failed =
-            |error: rustix::io::Errno| Failure::input(format!("terminal: cannot be asked for single keys: {error}"));
+            |error: rustix::io::Errno| Failure::input(format!("terminal: cannot be switched to single keys: {error}"));
         let before = tcgetattr(io::stdin()).map_err(failed)?;
         let mut raw = before.clone();
         raw.make_raw();
@@ -66,8 +66,8 @@ impl RawTerminal {
     #[cfg(not(unix))]
     fn take() -> Result<Self, Failure> {
         Err(Failure::input(
-            "terminal: found a system whose terminals hand over whole lines only, expected Linux or macOS; to film an agent in its \
-             place: driftworld film",
+            "terminal: found a system whose terminals only deliver whole lines, expected Linux or macOS; to film an agent \
+             instead: driftworld film",
         ))
     }
 

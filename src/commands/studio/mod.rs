@@ -20,24 +20,24 @@ use server::Server;
 
 /// Play, author, compare, order and replay worlds in a browser.
 ///
-/// The simulator runs in the page: frames equal those of this command to the bit, and nothing is sent anywhere. The page is
-/// served to this machine alone, under an address that nobody can guess, until Ctrl-C. --export writes it into a folder that any
-/// web server can hold.
+/// The simulator runs in the page: frames equal those of this command to the bit, and nothing is sent anywhere. The
+/// page is served to this machine alone, under an address that nobody can guess, until Ctrl-C. --export writes it into
+/// a folder that any web server can serve.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld studio
   driftworld studio find_objects#red --port 8008 --no-open
   driftworld studio --export public")]
 pub(crate) struct Studio {
-    /// What to begin with: a built-in task, or the path of a task spec to edit.
+    /// What to start with: a built-in task, or the path of a task spec to edit.
     task: Option<String>,
-    /// Write the page into this folder, and end.
+    /// Write the page into this folder, and exit.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["task", "port", "no_open"])]
     export: Option<PathBuf>,
-    /// The port on 127.0.0.1; 0 takes one that is free.
+    /// The port on 127.0.0.1; 0 chooses a free one.
     #[arg(long, value_name = "N", default_value_t = 0)]
     port: u16,
-    /// Print the address, and open no browser.
+    /// Print the address without opening a browser.
     #[arg(long)]
     no_open: bool,
 }
@@ -70,7 +70,7 @@ impl Studio {
         if !self.no_open && !open(&address) {
             output::note("found no browser to open; open the address above");
         }
-        output::note("serving to this machine alone; Ctrl-C ends it");
+        output::note("serving this machine only; Ctrl-C stops it");
         server.serve()
     }
 }

@@ -21,12 +21,12 @@ use crate::{Failure, log_folders, matrix_file, overwrite};
 /// It is forward if B had not been learned yet, and backward if it had. Ordering a curriculum by distance assumes that
 /// transfer grows as distance shrinks. This report tests that assumption on logged lifetimes.
 ///
-/// Several lifetimes are pooled. For each pair of variants, the first transfer of each lifetime counts, and their mean
-/// is taken. Use lifetimes with different orders: if all learned in one order, near variants are also early ones, and
+/// Several lifetimes are pooled. For each pair of variants, the first transfer of each lifetime counts, averaged over
+/// lifetimes. Use lifetimes with different orders: if all learned in one order, near variants are also early ones, and
 /// the two effects are confounded.
 ///
 /// The p-value comes from a Mantel test: variants swap labels in the distance matrix, pairs without a transfer stay
-/// without, and p is the share of relabellings with a correlation at least as strong.
+/// without one, and p is the share of relabellings with a correlation at least as strong.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects --matrix distances.csv
@@ -51,7 +51,7 @@ pub(crate) struct TransferReport {
     /// The smoothing window: flat, hanning, hamming, bartlett, blackman or none.
     #[arg(long, default_value = "flat", value_name = "METHOD")]
     smoothing_method: SmoothingMethod,
-    /// Number of relabellings to draw, or all if there are no more.
+    /// Number of relabellings to draw; all of them are used if there are no more.
     #[arg(long, default_value_t = 9_999, value_name = "N",
         value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
     relabellings: u64,

@@ -108,7 +108,7 @@ fn conclusion(report: &TransferReport) -> String {
         let test = direction.spearman?;
         let p = p_value_text(test.p_less, &test);
         Some(if test.p_less <= MAX_P_VALUE {
-            format!("{name} transfer: yes, nearer variants got more of it (p {p}).")
+            format!("{name} transfer: yes, nearer variants gained more (p {p}).")
         } else {
             format!("{name} transfer: not shown (p {p}, above {MAX_P_VALUE}); more variants or lifetimes may show it.")
         })
@@ -153,8 +153,8 @@ fn notes(report: &TransferReport) -> Vec<String> {
         );
     }
     notes.push(
-        "Correlation is not causation: a variant that is easy, or already learned as well as possible, has a transfer \
-         of its own whatever is near."
+        "Correlation is not causation: a variant that is easy, or already learned as well as possible, has its own \
+         transfer, whichever variants are near."
             .to_owned(),
     );
     for (names, place) in [
