@@ -337,7 +337,7 @@ mod tests {
         variants.map(|variant| Item::declared(variant, 0)).collect()
     }
 
-    /// The number of cells that show their subject, and of all cells.
+    /// The number of cells that show their subject, and the number of all cells.
     fn count_seen(task: &Arc<TaskSpec>) -> (usize, usize) {
         let (cells, _) = cells(&of_task(task, 8), LOOK, &|| ()).expect("it can be drawn");
         (cells.iter().filter(|cell| cell.is_seen).count(), cells.len())

@@ -83,7 +83,7 @@ impl Contents {
             Self::World => "a world",
             Self::Scenario => "a scenario",
             Self::Maps => "a maps file",
-            Self::Settings => "settings of metrics",
+            Self::Settings => "scoring settings",
             Self::Matrix => "a distance matrix",
             Self::Log => "a log",
             Self::Folder => "a folder",

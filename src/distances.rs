@@ -67,7 +67,7 @@ pub enum DistancesError {
 
 const OTHER_MEASURES: &str = "worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or behavior";
 
-const MEASURE_REQUIRED: &str = "what they are compared by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
+const MEASURE_REQUIRED: &str = "a measure to compare them by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
                        behavior; \
                        parameters compare variants of one task";
 
@@ -254,7 +254,7 @@ pub fn between(
     if by == By::Parameters {
         let Some((a, b)) = task else {
             return Err(DistancesError::By {
-                found: "parameters, for what are not two variants of one task".to_owned(),
+                found: "parameters, although the two are not variants of one task".to_owned(),
                 expected: OTHER_MEASURES,
             });
         };
@@ -283,7 +283,7 @@ pub fn between(
     let (a, b) = (sample.of(a, count)?, sample.of(b, count)?);
     let mut description = format!("by {}", by.name());
     if are_variants && task.is_none() && sample.by.is_none() {
-        description += " (two tasks have no parameters in common; the unit is another)";
+        description += " (two tasks have no parameters in common; the unit differs)";
     }
     if !are_worlds {
         let mean = if by == By::Placements {
@@ -331,7 +331,7 @@ fn weights_note(weights: &Weights) -> String {
     if other.is_empty() {
         return String::new();
     }
-    format!("; in the total elements weigh {}", other.join(", "))
+    format!("; weights of elements in the total: {}", other.join(", "))
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ impl Files {
         }
     }
 
-    /// Writes the figures of a lifetime. Lifetimes with the same name are numbered from the second on.
+    /// Writes the figures of a lifetime. If several lifetimes have the same name, a number is added from the second onwards.
     pub(crate) fn write(&mut self, drawn: &Drawn) -> Result<(), Failure> {
         let numbered = |number: usize| match number {
             1 => drawn.run_id.clone(),

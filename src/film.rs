@@ -22,20 +22,20 @@ const MIN_CAPTIONED_WIDTH: u32 = 100;
 /// Rows of a sheet.
 const SHEET_ROWS: usize = 12;
 
-/// From where an episode is looked at.
+/// The viewpoint of a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilmView {
     /// What the agent sees.
     #[value(alias = "rgb")]
     Agent,
-    /// The map, with the way so far.
+    /// The map, with the path so far.
     #[value(alias = "top-down")]
     Above,
     /// Both, side by side.
     Both,
 }
 
-/// What of the agent's view is shown.
+/// The modality of the agent's view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilmModality {
     /// Colours.
@@ -76,11 +76,11 @@ pub struct FilmOptions {
     /// At most 50 in a GIF, 100 in an APNG: viewers show no more.
     #[arg(long, value_name = "RATE", value_parser = rate)]
     pub fps: Option<f64>,
-    /// One frame for so many steps.
+    /// Number of steps per frame.
     // At least 1. The start and the end are always shown.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub every: u32,
-    /// Leave out the line above the pictures: time, return, what is carried, what happened.
+    /// Leave out the line above the pictures: time, return, carried objects, events.
     // Without captions, a sheet shows only the step. Frames of a film that are narrower than 100 pixels have none.
     #[arg(long = "no-captions", action = ArgAction::SetFalse)]
     pub captions: bool,
@@ -140,14 +140,14 @@ impl FilmOptions {
     pub fn check(&self) -> Result<(), Failure> {
         if !(1..=MAX_FILM_SIZE).contains(&self.size) || self.every < 1 {
             return Err(Failure::usage(format!(
-                "film: found size {} and every {}, expected 1 to {MAX_FILM_SIZE} pixels, and each step or fewer",
+                "film: found size {} and every {}, expected a size of 1 to {MAX_FILM_SIZE} pixels, and every at least 1",
                 self.size, self.every
             )));
         }
         if self.view == FilmView::Above && self.modality != FilmModality::Rgb {
             let word = self.modality.to_possible_value();
             return Err(Failure::usage(format!(
-                "{modality}: found {} of the view from above, expected a view of the agent's, of which alone there are \
+                "{modality}: found {} for the view from above, expected a view that includes the agent's, as maps have no \
                  modalities; leave {modality} out, or set {view} to agent or both",
                 word.as_ref().map_or("one", |word| word.get_name()),
                 modality = argument("modality"),

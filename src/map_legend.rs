@@ -109,7 +109,7 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         entries.push(Entry::new(Mark::Trail, "waypoints (dashed)"));
     }
     if moves.path.len() > 1 {
-        entries.push(Entry::new(Mark::Path, "the agent's way"));
+        entries.push(Entry::new(Mark::Path, "the agent's path"));
     }
     entries
 }
@@ -190,8 +190,8 @@ fn pixel_at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// Draws the legend in a column of this height, with scale and north at the bottom. The last line counts the entries that do not
-/// fit, of which the agent's is the first. If only one line fits and there are more entries, there is no text.
+/// Draws the legend in a column of this height, with scale and north at the bottom. The last line counts the entries that do
+/// not fit; the agent's entry is left out first. If only one line fits and there are more entries, there is no text.
 fn legend(entries: &[Entry], font_size: f32, height: u32, projection: &MapProjection) -> Drawing {
     let line = (font_size * 1.45).round();
     let bar = Bar::of(projection, (0.3 * projection.size[0]).min(MAX_BAR));

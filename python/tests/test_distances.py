@@ -146,7 +146,7 @@ def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
     matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"], by="worlds")
     with pytest.warns(UserWarning, match="distance: found variants of two tasks and no by"):
         separation = distance("find_objects#blue", "get_to_goal#plain")
-    assert "two tasks have no parameters in common; the unit is another" in separation.compared
+    assert "two tasks have no parameters in common; the unit differs" in separation.compared
     assert separation == distance("find_objects#blue", "get_to_goal#plain", by="worlds")
     assert not matrix.is_metric and matrix[0, 1] == pytest.approx(separation.total)
 

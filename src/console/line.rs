@@ -20,7 +20,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     (
         "action",
         "[-c N] -a A B C | ROW",
-        "the same with options: -c count, -a action",
+        "like step, with options: -c count, -a action",
     ),
     (
         "reset",
@@ -32,17 +32,17 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
         "CLASS X Y [KEY=VALUE ...] | JSON",
         "add an object to the world",
     ),
-    ("destroy", "INDEX | NAME", "take an object away for good"),
-    ("teleport", "X Y [HEADING]", "put the agent somewhere else"),
+    ("destroy", "INDEX | NAME", "remove an object for good"),
+    ("teleport", "X Y [HEADING]", "move the agent somewhere else"),
     ("show", "[MODALITY] [COLUMNS]", "show the agent's view in the terminal"),
     ("map", "[COLUMNS]", "show the world from above in the terminal"),
     (
         "screenshot",
         "FILE [MODALITY | map] [WIDTHxHEIGHT]",
-        "write a picture into a PNG file inside --out",
+        "write a picture into a PNG file inside --output",
     ),
     ("snapshot", "[NAME]", "take a snapshot, or list the snapshots"),
-    ("restore", "NAME", "go back to a moment"),
+    ("restore", "NAME", "go back to a snapshot"),
     (
         "send_message",
         "JSON | FILE",
@@ -54,7 +54,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
         "show log messages: agent, communications, worldmaker, academy",
     ),
     ("quit", "", "leave; so does Ctrl-D"),
-    ("exit", "", "the same"),
+    ("exit", "", "the same as quit"),
 ];
 
 /// Help on one command, by default on all.

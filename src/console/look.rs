@@ -92,7 +92,7 @@ impl Session<'_> {
         };
         let path = self.folder.write(file, "png", &bytes)?;
         let unit = match picture {
-            Picture::Seen(Modality::Depth) => ", 1 cm a level",
+            Picture::Seen(Modality::Depth) => ", 1 cm per level",
             _ => "",
         };
         Ok(format!("{}: {width} × {height} pixels{unit}", path.shown()))

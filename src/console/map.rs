@@ -18,7 +18,7 @@ fn sign(zone: &Zone) -> (char, &'static str) {
     } else if zone.speed_factor < 1.0 {
         ('~', "slows")
     } else if zone.speed_factor > 1.0 {
-        ('=', "hastens")
+        ('=', "speeds up")
     } else {
         (':', "a zone")
     }

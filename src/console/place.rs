@@ -42,14 +42,14 @@ impl Folder {
             .extension()
             .is_some_and(|found| found.eq_ignore_ascii_case(ending))
         {
-            return refuse("which ends otherwise");
+            return refuse("which has another extension");
         }
         let mut path = self.0.clone();
         for part in relative.components() {
             path.push(part);
             match path.symlink_metadata() {
                 Ok(found) if found.is_symlink() => return refuse("which is a link"),
-                Ok(found) if !(found.is_file() || found.is_dir()) => return refuse("which is no file"),
+                Ok(found) if !(found.is_file() || found.is_dir()) => return refuse("which is not a file"),
                 _ => {}
             }
         }

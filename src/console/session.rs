@@ -175,7 +175,7 @@ impl<'a> Session<'a> {
             left_out += self.add_event_lines(&last, &mut lines);
         }
         if left_out > 0 {
-            lines.push(format!("… and {left_out} lines more"));
+            lines.push(format!("… and {left_out} more lines"));
         }
         let outcome = match (last.ended(), last.success, last.terminated) {
             (false, ..) => "",
@@ -250,14 +250,14 @@ impl<'a> Session<'a> {
             })?,
         };
         self.environment.destroy(index).map_err(to_text)?;
-        let remark = self.remark(Category::Worldmaker, format!("object {index} was taken away"));
+        let remark = self.remark(Category::Worldmaker, format!("object {index} was removed"));
         Ok(format!("{remark}object {index} is gone"))
     }
 
     fn snapshot(&mut self, name: Option<&str>) -> Result<String, String> {
         let Some(name) = name else {
             let names: Vec<&str> = self.snapshots.keys().map(String::as_str).collect();
-            return Ok(joined_or(&names, ", ", "no moments yet"));
+            return Ok(joined_or(&names, ", ", "no snapshots yet"));
         };
         if self.snapshots.len() >= MAX_SNAPSHOTS && !self.snapshots.contains_key(name) {
             return Err(format!("found {MAX_SNAPSHOTS} snapshots, expected fewer; reuse a name"));

@@ -64,7 +64,7 @@ fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenari
         return Ok(());
     }
     Err(Failure::input(format!(
-        "lifetimes: found {lifetimes} of {regimes} regimes each, expected at most {MAX_REGIMES} regimes together: fewer \
+        "lifetimes: found {lifetimes} of {regimes} regimes each, expected at most {MAX_REGIMES} regimes together; use fewer \
          lifetimes, variants or evaluations"
     )))
 }

@@ -17,7 +17,7 @@ impl DesignRequest {
                     .any(|(other, held)| other == task && held.name() == variant)
             });
             if is_held {
-                notes.push(format!("{name} is named and held out: it is evaluated and not learned"));
+                notes.push(format!("{name} is named and held out: it is evaluated but not learned"));
             }
         }
         let num = chosen.order.len() as u64;
@@ -33,8 +33,8 @@ impl DesignRequest {
         }
         if self.experts && self.mix.is_some() {
             notes.push(
-                "experts of a mixture learn a variant for as long as the drift is nearer to it, not in the worlds in \
-                 which the mixture draws it: about as many, and not the same"
+                "experts of a mixture learn a variant while the drift is nearer to it, not in the worlds in which the \
+                 mixture draws it: about the same number of worlds, but different ones"
                     .to_owned(),
             );
         }

@@ -87,8 +87,8 @@ fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modali
     }
     let images = serde_json::to_string(modalities)?;
     Err(Failure::input(format!(
-        "{}\nfor a learner with the images {images}; mend \"affects\" in the task (driftworld elements {}), name other variants, \
-         or say other images with {}",
+        "{}\nthis is for a learner with the images {images}; correct \"affects\" in the task (see driftworld elements {}), name \
+         other variants, or choose other images with {}",
         others.join("\n"),
         found.task,
         argument("modalities")

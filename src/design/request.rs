@@ -32,7 +32,7 @@ const EVALUATIONS: [&str; 2] = [
 const FORMS: [&str; 7] = [
     "condensed: Each variant once, in one long block",
     "dispersed: Each variant repeatedly, in short blocks (3, or as many as --blocks allows)",
-    "permuted: Each variant once, in random order. Each of --lifetimes has another order",
+    "permuted: Each variant once, in random order. Each of --lifetimes has a different order",
     "alternating: Two variants in turn, 3 times each unless --blocks is given",
     "expert: Single-task experts: one scenario per variant, which learns it alone",
     "joint: All variants in one block, shuffled: joint training, an upper bound for lifelong learners",
@@ -75,7 +75,7 @@ pub struct DesignRequest {
     #[arg(long, value_parser = words::element, value_name = "ELEMENT")]
     #[serde(deserialize_with = "words::probe")]
     pub probe: Option<Element>,
-    /// Images of the learner that the probe is for [default: those of the task's worlds].
+    /// Images of the learner for which the probe is designed [default: those of the task's worlds].
     #[arg(long, requires = "probe", value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
     pub modalities: Option<Vec<Modality>>,
     /// Number of variants in the probe [default: all declared, and at least 4].
@@ -83,12 +83,12 @@ pub struct DesignRequest {
     pub variants: Option<usize>,
     /// What to compare the variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
     ///
-    /// By default what their task declares, which is parameters where it says nothing; worlds for variants of several
+    /// The default is what their task declares (parameters if it declares nothing), and worlds for variants of several
     /// tasks. --probe and --step-distance always measure by parameters.
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE")]
     #[serde(deserialize_with = "words::by")]
     pub by: Option<By>,
-    /// Create a sequence of variants, each this far from the one before.
+    /// Create a sequence of variants, each this far from the previous one.
     ///
     /// The distance is measured in the probed element, or else in all.
     #[arg(long, value_name = "DISTANCE")]
@@ -99,7 +99,7 @@ pub struct DesignRequest {
     /// Number of steps, one fewer than variants [default: 4].
     #[arg(long, value_name = "N")]
     pub steps: Option<u32>,
-    /// Arrangement of the learning blocks [default: one variant after the other; of several lifetimes: permuted].
+    /// Arrangement of the learning blocks [default: one variant after the other; permuted for several lifetimes].
     ///
     /// If there are more blocks than variants, the sequence starts over.
     #[arg(long, value_parser = documented::<ScenarioForm>(&FORMS))]
@@ -110,13 +110,13 @@ pub struct DesignRequest {
     /// Write this many lifetimes into the folder --output, each with worlds and an order of its own.
     ///
     /// Their orders are the rows of a balanced Latin square (--form permuted): each variant is equally often in each
-    /// place and after each other variant. With an order, blocks or a drift, all have that one.
+    /// place and after each other variant. If an order, blocks or a drift is given, all lifetimes use it.
     #[arg(long, value_name = "N")]
     pub lifetimes: Option<u64>,
     /// Evaluate all lifetimes on the same worlds.
     #[arg(long, requires = "lifetimes")]
     pub fixed_evaluation: bool,
-    /// Evaluate these variants, or tasks, too, and never learn them.
+    /// Evaluate these variants, or tasks, too, but never learn them.
     #[arg(long, num_args = 1.., value_name = "VARIANT")]
     pub hold_out: Vec<String>,
     /// Drift from each variant to the next: linear, cosine, step:N or sawtooth:N.
@@ -127,8 +127,8 @@ pub struct DesignRequest {
     pub drift: Option<DriftSchedule>,
     /// Switch at random, not at a fixed point: each value that cannot be interpolated, or the whole variant with `task`.
     ///
-    /// The switch becomes more likely as the drift proceeds. With `task` each experience is of one of the two variants, which may
-    /// be of two tasks.
+    /// The switch becomes more likely as the drift proceeds. With `task`, each experience is of one of the two
+    /// variants, which may belong to different tasks.
     #[arg(long, requires = "drift", num_args = 0..=1, require_equals = true, default_missing_value = "parameter", value_name = "WHAT")]
     #[serde(deserialize_with = "words::mix")]
     pub mix: Option<Mix>,
@@ -170,7 +170,7 @@ pub struct DesignRequest {
     pub split: Split,
     /// Learn the variants of a task in the same layouts, one by one.
     ///
-    /// A learner can then use what it remembers of a layout, not of the task. By default, no two variants share one.
+    /// A learner can then use what it remembers of a layout, not of the task. By default, no two variants share a layout.
     #[arg(long)]
     pub paired_learning: bool,
     /// Draw this many worlds of each regime first, and fail if one cannot be drawn.

@@ -194,7 +194,7 @@ impl Means {
     pub(super) fn remark(&self) -> String {
         match self.by.subject() {
             _ if self.by == By::BehaviorSuccess => {
-                format!("; own experts succeed in {:.1} % of worlds more", 100.0 * self.mean(2))
+                format!("; own experts succeed in {:.1} % more worlds", 100.0 * self.mean(2))
             }
             "behavior" => format!(
                 "; the second's planner earns {:.1} points less in the first's worlds, the first's {:.1} less in the second's",

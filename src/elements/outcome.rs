@@ -163,8 +163,8 @@ impl ElementsOutcome {
         self.in_vain.iter().map(|vain| {
             let letters: Vec<&str> = vain.elements.iter().map(|element| element.letter()).collect();
             format!(
-                "{}: {} declares {}, which differed from {} in none of the variants that change it ({}): take it out of \"affects\"; \
-                 or, if it shows later or elsewhere, --steps takes more than {} and --worlds more than {}",
+                "{}: {} declares {}, which differed from {} in none of the variants that change it ({}): remove it from \"affects\"; \
+                 or, if it shows later or in other worlds, give --steps more than {} and --worlds more than {}",
                 self.task,
                 vain.parameter,
                 letters.join(" "),
@@ -182,7 +182,7 @@ impl ElementsOutcome {
                 let (task, base, own) = (&self.task, &self.base, &variant.variant);
                 format!(
                     "{task}#{own}: {name} made no difference: with its value in {base}, the same happened in all steps. Nothing reads it, \
-                     or it counts later than that: --steps takes more than {}",
+                     or it takes effect later: give --steps more than {}",
                     self.steps
                 )
             };

@@ -18,9 +18,9 @@ pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
 /// Maximum number of pairs of worlds.
 pub const MAX_ELEMENTS_WORLDS: u64 = 1_000;
 
-/// What is tried: the arguments of `driftworld elements` and of Python's `elements`. There are 1 to
+/// The settings of the test: the arguments of `driftworld elements` and of Python's `elements`. There are 1 to
 /// [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to [`MAX_EXPERIMENT_STEPS`] steps. If `a` and `b` are given, they are
-/// compared with each other, in place of all variants, or the one that `task` names, with the first.
+/// compared with each other; otherwise all variants, or the one that `task` names, are compared with the first.
 #[derive(Args, Clone, Debug, PartialEq, Deserialize)]
 #[group(skip)]
 #[serde(default, deny_unknown_fields)]
@@ -32,17 +32,17 @@ pub struct ElementsRequest {
     pub a: Option<String>,
     /// The variant that is compared with it.
     pub b: Option<String>,
-    /// Which images the learner has; those that the task's worlds ask for if not said.
+    /// Images that the learner gets [default: those of the task's worlds].
     #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
     pub modalities: Option<Vec<Modality>>,
-    /// How many pairs of worlds are tried.
+    /// Number of pairs of worlds to test.
     #[arg(long, default_value_t = DEFAULT_ELEMENTS_WORLDS, value_name = "N",
         value_parser = clap::value_parser!(u64).range(1..=MAX_ELEMENTS_WORLDS))]
     pub worlds: u64,
-    /// The seed that worlds are drawn under.
+    /// Seed of the worlds.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     pub seed: u64,
-    /// The most steps of an episode.
+    /// Maximum number of steps per episode.
     #[arg(long, default_value_t = 100, value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_EXPERIMENT_STEPS)))]
     pub steps: u32,

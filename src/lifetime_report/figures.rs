@@ -36,7 +36,7 @@ impl Default for FigureChoice {
 }
 
 impl FigureChoice {
-    /// The chosen figures, in the order of a report; all if none is.
+    /// The chosen figures, in the order of a report; all if none is chosen.
     pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
         let requested = self.plot_types.iter().map(|word| Figure::asked_for(word));
         let requested = requested

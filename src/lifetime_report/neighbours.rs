@@ -139,7 +139,7 @@ fn pictures(scenario: &str, tasks: &Tasks, made_from: Option<&Value>) -> Result<
     for (_, regime, variant, _) in learned(scenario, tasks)?.into_iter().take(MAX_PICTURED) {
         let logged_hash = made_from.and_then(|made_from| made_from.get(variant.id())?.get("variant")?.as_str());
         if logged_hash.is_some_and(|hash| hash != variant.hash()) {
-            return Err(format!("{} is not what it was when this was run", variant.id()));
+            return Err(format!("{} has changed since this run", variant.id()));
         }
         shown.push(Item {
             index: regime.first_index,
@@ -185,7 +185,7 @@ impl Named {
         };
         let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(distance).collect();
         if distances.is_empty() {
-            return (None, "There is one learning block, and so no distance.".to_owned());
+            return (None, "There is one learning block, so no distance.".to_owned());
         }
         if distances.iter().all(Option::is_none) {
             let why = format!(

@@ -22,7 +22,7 @@ fn run_design(folder: &Path, more: &str) -> (String, String) {
 fn note_names_held_out_variants() {
     let folder = scratch();
     let (_, stderr) = run_design(folder.path(), "find_objects#dusk --hold-out find_objects#dusk");
-    let note = "note: find_objects#dusk is named and held out: it is evaluated and not learned";
+    let note = "note: find_objects#dusk is named and held out: it is evaluated but not learned";
     assert!(stderr.contains(note), "{stderr}");
     let (whole, stderr) = run_design(folder.path(), "--hold-out find_objects#dusk");
     assert!(!stderr.contains("note:"), "{stderr}");

@@ -121,7 +121,7 @@ fn more_steps_find_later_differences() {
     };
     let soon = warned(50);
     soon.says("period made no difference");
-    soon.says("--steps takes more than 50");
+    soon.says("give --steps more than 50");
     assert_eq!(warned(700), "");
 }
 

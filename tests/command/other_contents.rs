@@ -12,7 +12,7 @@ const KINDS: [(&str, &str); 7] = [
     ("world.json", "a world"),
     ("scenario.json", "a scenario"),
     ("maps.json", "a maps file"),
-    ("settings.json", "settings of metrics"),
+    ("settings.json", "scoring settings"),
     ("matrix.json", "a distance matrix"),
     ("log", "a log"),
 ];

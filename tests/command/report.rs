@@ -184,7 +184,7 @@ fn worlds_of_a_task_that_changed_since_the_run_are_not_pictured() {
     write(&info, &json.to_string());
     succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
-    assert!(page.contains("No pictures of worlds: find_objects#red is not what it was when this was run."));
+    assert!(page.contains("No pictures of worlds: find_objects#red has changed since this run."));
     assert!(!page.contains("<figure class=\"world\">"));
 }
 
