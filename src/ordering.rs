@@ -20,9 +20,9 @@ const MAX_LISTED: usize = 20;
 pub struct OrderRequest {
     /// Order of the variants [default: the shortest path; exact for up to 15 variants].
     ///
-    /// What is to be like what: gradual (the shortest path, with the smallest largest step among equals), outward (by growing
-    /// distance from the first), abrupt (the longest path), path (the shortest path), farthest (each time what is farthest
-    /// from all before it), named (as given). Or a method: nearest, exact, two-opt, random, target-step, given.
+    /// By purpose: gradual (the shortest path, with the smallest largest step among equals), outward (by growing distance
+    /// from the first), abrupt (the longest path), path (the shortest path), farthest (each time the variant farthest from
+    /// all before it), named (as given). Or a method: nearest, exact, two-opt, random, target-step, given.
     #[arg(long, value_name = "ORDER")]
     #[serde(deserialize_with = "request::word")]
     pub order: Option<OrderWord>,
@@ -30,7 +30,7 @@ pub struct OrderRequest {
     #[arg(skip)]
     #[serde(deserialize_with = "request::word")]
     pub method: Option<Method>,
-    /// First variant, such as blue [default: the one named first, or whichever is best of one whole task].
+    /// First variant, such as blue [default: the one named first, or the best one of a whole task].
     #[arg(long, value_name = "VARIANT")]
     pub start: Option<String>,
     /// Last variant [default: whichever is best].
@@ -153,7 +153,7 @@ impl OrderRequest {
         let method = self.method(matrix.len());
         if self.target_step.is_some() && method != Method::TargetStep {
             return Err(Failure::usage(format!(
-                "{}: found with the order {}, expected the order {}, which alone keeps to it",
+                "{}: found with the order {}, expected the order {}, the only one that uses it",
                 argument("target_step"),
                 <&str>::from(method),
                 <&str>::from(Method::TargetStep)

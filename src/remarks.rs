@@ -55,7 +55,7 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
     found.iter().map(|remark| remark.sentence(total)).collect()
 }
 
-/// Groups that the legend of a world's layout names but its task does not have.
+/// Groups that are named in the legend of a world's layout, but missing in its task.
 fn unknown_groups(world: &World, groups: &[&str]) -> Vec<(String, String)> {
     let legend = world.environment_params.layout.iter().flat_map(|layout| &layout.legend);
     let unknown = legend.filter_map(|(symbol, meaning)| match meaning {

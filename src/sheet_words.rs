@@ -87,7 +87,7 @@ pub(crate) fn viewpoint(shown: &Item, choice: Choice, look: Options) -> String {
     format!("{world}, {turn}")
 }
 
-/// The values in which a variant differs from another, uncut, with the other's in brackets.
+/// The values in which a variant differs from another, in full, with the other's in brackets.
 pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     let parameters = variant.task().parameters();
     let short = |name: &str, value: &Value| {

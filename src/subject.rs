@@ -12,7 +12,7 @@ const SIDE: u32 = 64;
 /// Number of columns at each side that do not count: objects there are cut off, or easily overlooked.
 const MARGIN: u32 = SIDE / 8;
 
-/// An object with at least this many pixels counts as visible: a thousandth of the picture, a cube of 1 m from 30 m.
+/// An object with at least this many pixels counts as visible: a thousandth of the picture, or a 1 m cube seen from 30 m.
 pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
 /// The subjects of a picture: objects that pay, move, have a function or a place in an order; if there are none, objects that

@@ -72,7 +72,7 @@ pub enum TaskError {
     Spec(#[from] SpecError),
     /// The name matches several variants, as a family or a pattern, but one variant is needed.
     #[error(
-        "{}: found a name of {count} variants, expected one of them, such as {first}",
+        "{}: found a name that stands for {count} variants, expected one of them, such as {first}",
         printable(name)
     )]
     Several {
@@ -113,7 +113,7 @@ pub(crate) fn known_tasks(misspelt: &str) -> String {
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()
-        .with_advice("give the library that has it with --assets LIBRARY, in Python assets=LIBRARY")
+        .with_advice("name the library that contains it with --assets LIBRARY, or in Python with assets=LIBRARY")
 }
 
 /// Refuses a task with objects of an unknown class or model.

@@ -87,7 +87,7 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
     };
     let (variant, seed) = (&trial.variant, trial.seed);
     Some(format!(
-        "{variant}: the planner came to the success in {} of {} worlds, not in {}{more}; look at one: driftworld render \
+        "{variant}: the planner succeeded in {} of {} worlds, but not in {}{more}; look at one: driftworld render \
          '{variant}' --seed {seed} --index {} -o world.png",
         expert.succeeded,
         expert.worlds,

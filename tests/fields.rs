@@ -426,7 +426,7 @@ fn read_by(place: &FieldPlace) -> Json {
 }
 
 #[test]
-fn unread_fields_of_an_object_make_no_distance() {
+fn unread_fields_of_an_object_do_not_affect_the_distance() {
     let read = |json: &Json| World::from_json("world", &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
     let with = |motion: &str, changes: &[(&str, Json)]| {
         let mut world = full();

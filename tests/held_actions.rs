@@ -17,7 +17,7 @@ struct Course {
 }
 
 /// Runs a whole episode with one motion.
-fn live(world: &WorldDraft, motion: [f64; 3]) -> Course {
+fn run_episode(world: &WorldDraft, motion: [f64; 3]) -> Course {
     let mut environment = Environment::new(world.clone().check().expect("the world is valid"));
     let mut truncated = false;
     while !environment.ended() {
@@ -49,10 +49,10 @@ fn held_action_gets_reward_and_limit_by_the_second() {
             let mut world = draw(variant);
             for motion in [[0.0; 3], [1.0 + number as f64 / 4.0, 9.0, 0.0], [5.0, -40.0, 0.0]] {
                 world.agent_params.frame_skip = 1;
-                let free = live(&world, motion);
+                let free = run_episode(&world, motion);
                 for hold in [2, 3, 7, 10] {
                     world.agent_params.frame_skip = hold;
-                    let held = live(&world, motion);
+                    let held = run_episode(&world, motion);
                     let name = format!("{} held {hold} in {motion:?}: {free:?}, {held:?}", variant.id());
                     assert_eq!((free.end, free.truncated), (held.end, held.truncated), "{name}");
                     assert!((free.seconds - held.seconds).abs() < 1e-9, "{name}");
@@ -75,7 +75,7 @@ fn time_step_of_any_length_gets_reward_and_limit_by_the_second() {
         assert!(limit > 0.0 && world.max_steps == 0, "{task} has a limit of seconds");
         for time_step in [0.02, 0.05, 0.1, 0.25] {
             world.agent_params.time_step = time_step;
-            let course = live(&world, [0.0; 3]);
+            let course = run_episode(&world, [0.0; 3]);
             let pay = world.rules.reward_per_second * limit;
             assert!(
                 (course.seconds - limit).abs() < 1e-6 && course.truncated,

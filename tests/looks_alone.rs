@@ -135,7 +135,7 @@ fn same_actions_give_the_same_path_if_only_looks_differ() {
         let found = paths(&task(name, str::to_owned));
         assert!(found.len() >= 3, "{name}: {found:?}");
         for (variant, touched, differ) in found {
-            assert_eq!(differ, 0, "{variant}: of {WORLDS} walks {differ} differ");
+            assert_eq!(differ, 0, "{variant}: {differ} of {WORLDS} walks differ");
             assert!(
                 touched * 2 > WORLDS as usize,
                 "{variant}: only {touched} walks touched anything"

@@ -16,6 +16,6 @@ pub(crate) fn reference(name: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
+    eprintln!("skipped: {} is missing; set DRIFTWORLD_REFERENCE", path.display());
     None
 }

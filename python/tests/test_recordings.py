@@ -160,7 +160,7 @@ def test_episode_is_rendered_in_any_size_and_view(tmp_path: Path) -> None:
         recording.save(tmp_path / "e.png", size=24, view=view, modality=modality)
         sheets[view, modality] = (tmp_path / "e.png").read_bytes()
     assert len(set(sheets.values())) == len(sheets)
-    with pytest.raises(ValueError, match="modality: found depth of the view from above"):
+    with pytest.raises(ValueError, match="modality: found depth for the view from above"):
         recording.save(tmp_path / "e.png", view="above", modality="depth")
     assert recording._repr_png_().startswith(b"\x89PNG")
     assert repr(recording) == f"<Recording of episode 0: 10 steps, reward {recording.reward:g}, ended by steps>"

@@ -45,7 +45,7 @@ impl Session<'_> {
         };
         let mut text = format!(
             "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, {}\nobjects    {}, of \
-             which {num_present} are there\n\
+             which {num_present} are present\n\
              actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
             world.hash(),
             self.environment.num_steps(),

@@ -29,8 +29,8 @@ const SUPERSAMPLING: u32 = 2;
 pub enum PictureDistanceError {
     /// No position is free in every world.
     #[error(
-        "pictures: found none of {tried} places free in all worlds, expected at least 1; where walls stand elsewhere, as in mazes \
-         of other sizes, compare by worlds or by parameters"
+        "pictures: found none of {tried} places free in all worlds, expected at least 1; if the worlds' walls are in different \
+         places, as in mazes of different sizes, compare by worlds or by parameters"
     )]
     NoPlace {
         /// Number of positions tried.

@@ -46,12 +46,12 @@ pub struct ScalesRequest {
     /// Seed of the worlds.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     pub seed: u64,
-    /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
+    /// Also measure the ceiling of agents that cannot tell apart variants that look alike at the start.
     ///
-    /// Of each set of the variants above that look alike, or of the set named; may be given several times. It is what
-    /// the best of some scripted agents earns in the mean over the set: one that stands still, one that acts at random,
-    /// the planner of each variant, and that planner until a reward shows another variant. Without the last, it is the
-    /// ceiling of agents without memory.
+    /// For each set of the variants above that look alike, or for the set named. Repeatable. It is the highest mean
+    /// reward over the set among some scripted agents: one that stands still, one that acts at random, the planner of
+    /// each variant, and that planner until a reward reveals another variant. Without the last, it is the ceiling of
+    /// agents without memory.
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = names, value_name = "VARIANT,…")]
     pub unlabelled: Vec<Vec<String>>,
     /// An asset library to search before the built-in assets. Repeatable.

@@ -140,7 +140,7 @@ fn distinguishable_sets_are_refused() {
     check(
         &[&["select_object#green", "select_object#dusk"]],
         &format!(
-            "unlabelled: found select_object#green and select_object#dusk, which differ in more than what pays, {advice}"
+            "unlabelled: found select_object#green and select_object#dusk, which differ in more than their rewards, {advice}"
         ),
     );
     check(

@@ -200,10 +200,10 @@ fn visible_difference(
     for index in 0..request.worlds {
         let (a, b) = (sampler_a.world(index)?, sampler_b.world(index)?);
         if unpaid(&a)? != unpaid(&b)? {
-            return Ok(Some("differ in more than what pays"));
+            return Ok(Some("differ in more than their rewards"));
         }
         if index < PICTURES && first_picture(&a, catalogue) != first_picture(&b, catalogue) {
-            return Ok(Some("have other first pictures"));
+            return Ok(Some("have different first pictures"));
         }
     }
     Ok(None)

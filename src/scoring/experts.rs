@@ -92,8 +92,8 @@ impl Experts {
     }
 }
 
-/// For each task, keeps only the lifetime's own experts if there are any. The name of an own expert's scenario begins with the
-/// name of the lifetime's. Several lifetimes may be scored together, with the experts of all of them.
+/// For each task, keeps only the lifetime's own experts if there are any. The name of an own expert's scenario begins
+/// with the name of the lifetime's scenario. Several lifetimes may be scored together, with the experts of all of them.
 fn prefer_own(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
         return experts;

@@ -65,8 +65,8 @@ impl ScoringRequest {
     }
 }
 
-/// How a lifetime is scored, and with which experts it is compared. What is not given is taken from the file of settings, else
-/// it is the default.
+/// How a lifetime is scored, and with which experts it is compared. Missing values come from the settings file, or else
+/// are the defaults.
 #[derive(Args, Clone, Debug, Default, Deserialize)]
 #[group(skip)]
 #[command(next_help_heading = "Scoring")]
@@ -268,7 +268,7 @@ pub struct Intervals {
     pub resamples: u32,
     /// What to resample: runs (whole lifetimes) or strata (within each task).
     ///
-    /// `strata` does as rliable does: it treats the tasks of a lifetime as independent.
+    /// `strata` works as in rliable: it treats the tasks of a lifetime as independent.
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
     pub resampling: Resampling,
     /// Seed of the bootstrap.

@@ -25,7 +25,7 @@ pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
     if missing.len() == tasks.len() {
         let hint = tasks.first().map_or_else(String::new, |task| near(task));
         found.push(format!(
-            "scales: found no floor and ceiling of a task of this log, expected {}{hint}; every task is scaled by \
+            "scales: found no floor and ceiling for any task of this log, expected {}{hint}; every task is scaled by \
              its own range",
             first_of(&tasks, MAX_NAMES)
         ));
@@ -56,8 +56,8 @@ fn alike_with_others(scales: &Scales, tasks: &[String]) -> Option<String> {
     }
     (!uncovered.is_empty()).then(|| {
         format!(
-            "scales: {} look alike, and their ceiling without a label is known among more tasks only; `driftworld scales \
-             --unlabelled` of these alone measures it",
+            "scales: {} look alike, but their ceiling without a label is only known for larger sets of tasks; measure it with \
+             `driftworld scales --unlabelled` for these tasks alone",
             uncovered.join(", ")
         )
     })

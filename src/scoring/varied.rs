@@ -120,15 +120,15 @@ impl Varied {
         };
         let mut parts = Vec::new();
         for (what, names) in [
-            ("differ between lifetimes", of(Some(true))),
-            ("are fixed", of(Some(false))),
-            ("are not in the logs", of(None)),
+            ("these vary", of(Some(true))),
+            ("these are fixed", of(Some(false))),
+            ("these are not logged", of(None)),
         ] {
             if !names.is_empty() {
                 parts.push(format!("{what}: {names}"));
             }
         }
-        format!("What intervals are over: {}.", parts.join("; "))
+        format!("Between lifetimes, {}.", parts.join("; "))
     }
 }
 
@@ -156,12 +156,12 @@ mod tests {
         let varied = Varied::between(&lifetimes).expect("there are several");
         assert_eq!(
             varied.sentence(),
-            "What intervals are over: differ between lifetimes: order, learning worlds; are fixed: evaluation worlds, \
+            "Between lifetimes, these vary: order, learning worlds; these are fixed: evaluation worlds, \
              agent, run seed."
         );
         assert_eq!(Varied::between(&lifetimes[..1]), None);
         let silent = [makeup(&["a"], 1, None), makeup(&["a"], 1, Some(5))];
         let text = Varied::between(&silent).expect("there are several").sentence();
-        assert!(text.ends_with("are not in the logs: evaluation worlds."), "{text}");
+        assert!(text.ends_with("these are not logged: evaluation worlds."), "{text}");
     }
 }

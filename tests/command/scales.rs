@@ -133,7 +133,7 @@ fn lookalike_tasks_have_a_separate_ceiling() {
     };
     live("life", &tasks);
     let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
-    let line = "selectobject_green, selectobject_red look alike. Without a label the best known agent has ";
+    let line = "selectobject_green, selectobject_red look alike. Without a label, the best known agent gets ";
     assert!(shown.contains(line), "{shown}");
     let shown = succeed_in(folder.path(), &["metrics", "-R", "life", "--scales", "scales.json"]);
     assert_eq!(shown.matches(line).count(), 1, "{shown}");
@@ -175,7 +175,7 @@ fn scales_that_fit_no_task_are_reported() {
     let stderr = warned(r#"{"scales": {"findobject_red": {"floor": 0, "ceiling": 10}}}"#);
     assert!(
         stderr.contains(
-            "found no floor and ceiling of a task of this log, expected findobjects_red, findobjects_penalty"
+            "found no floor and ceiling for any task of this log, expected findobjects_red, findobjects_penalty"
         ) && stderr.contains("did you mean \"findobject_red\"?"),
         "{stderr}"
     );

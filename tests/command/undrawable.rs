@@ -298,5 +298,5 @@ fn planner_tries_the_worlds_of_validate_and_reports_failures() {
     assert_eq!(trial_of("ways.json"), (Some(3), "[]".to_owned()));
     let (succeeded, warnings) = trial_of("closed.json");
     assert_eq!(succeeded, Some(0));
-    assert!(warnings.contains("0 of 3 worlds, not in 0, 1, 2"), "{warnings}");
+    assert!(warnings.contains("0 of 3 worlds, but not in 0, 1, 2"), "{warnings}");
 }

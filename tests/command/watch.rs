@@ -260,7 +260,7 @@ fn each_view_and_modality_gives_a_different_picture() {
             &["film", "find_objects"],
         ] {
             let error = fail(2, &[command, &wrong].concat());
-            error.says("--modality: found depth of the view from above");
+            error.says("--modality: found depth for the view from above");
             assert!(!refused.exists());
         }
     }
@@ -348,7 +348,7 @@ fn film_of_a_world_without_a_limit_ends() {
     };
     let (steps, stderr) = film("");
     assert_eq!(steps, Some(3000));
-    stderr.says("no limit of steps");
+    stderr.says("no step limit");
     stderr.says("--max-steps");
     assert_eq!(film("--max-steps 7"), (Some(7), String::new()));
 }
