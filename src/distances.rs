@@ -67,9 +67,8 @@ pub enum DistancesError {
 
 const OTHER_MEASURES: &str = "worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or behavior";
 
-const MEASURE_REQUIRED: &str = "a measure to compare them by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
-                       behavior; \
-                       parameters compare variants of one task";
+const MEASURE_REQUIRED: &str = "a measure to compare them by: worlds, pictures, occupancy, placements, objects, colors, rewards, \
+     dynamics or behavior; parameters compare variants of one task";
 
 /// The default measure for some variants: the measure declared by their common task, or worlds if they belong to several tasks.
 pub fn fitting<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> By {

@@ -219,7 +219,7 @@ fn outside_disc(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     rest
 }
 
-/// Draws a plus or a minus beside an object with this centre and radius, at the corner where it covers the least of the objects.
+/// Draws a plus or a minus beside an object with this centre and radius, at the corner where it covers objects least.
 fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, discs: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
     let font_size = (size as f32 / 17.0).clamp(9.0, 30.0);

@@ -84,7 +84,7 @@ mod tests {
     #[derive(Args, serde::Deserialize, Debug, PartialEq)]
     #[serde(default, deny_unknown_fields)]
     struct Fixture {
-        /// How many are tried.
+        /// Number of trials.
         #[arg(long, default_value_t = 3)]
         known: u32,
         /// What was added.

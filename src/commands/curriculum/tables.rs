@@ -187,7 +187,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
     });
     let headings = ["pair", "best changes", "planner of the first loses", "of the second"];
     format!(
-        "{}\nHow many points a planner of one variant earns less in worlds of the other than the other's own planner; where \
+        "{}\nHow many points less a planner of one variant earns in worlds of the other than the other's own planner; where \
          nothing changes, nothing has to be forgotten.\n",
         table(headings, rows, &[2, 3])
     )

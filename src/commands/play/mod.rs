@@ -33,7 +33,7 @@ const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: restart 
 /// Walk through a world with the keys, in a terminal.
 ///
 /// Arrows or wasd walk and turn, the space bar uses the object ahead, v changes the view, r restarts, q quits. The
-/// world runs in simulated time; if none of its actions does nothing, it waits for keys.
+/// world runs in real time; if none of its actions does nothing, it waits for keys.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld play find_objects#red
@@ -44,7 +44,7 @@ pub(crate) struct Play {
     choice: WorldRequest,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Steps per second, at most 20 [default: simulated time].
+    /// Steps per second, at most 20 [default: real time].
     #[arg(long, value_name = "RATE", value_parser = rate)]
     fps: Option<f64>,
     /// Save the played episodes to this file, for `driftworld replay`.
