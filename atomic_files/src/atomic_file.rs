@@ -11,7 +11,7 @@ use crate::leftovers::{ENDING, TRIES, remove_leftovers_once};
 use crate::permissions;
 use crate::unfinished::Unfinished;
 
-/// Maximum number of characters of the file's name at the start of the temporary name.
+/// Maximum number of characters that a temporary name copies from the file's name.
 const MAX_CHARACTERS: usize = 60;
 
 /// A file that is being written. If it is dropped before [`commit`](Self::commit), it is removed, and a previous file

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 //!
 //! [`AtomicFile`] writes under a temporary name in the target's folder, renames the file when it is complete, and
-//! removes it if writing fails. Devices and pipes cannot keep a partial file, and are written directly.
+//! removes it if writing fails. Devices and pipes cannot be replaced, so they are written directly.
 //! [`ScratchFolder`] is a temporary folder for work with several files.
 //!
 //! A process that is stopped removes its own unfinished files with [`remove_unfinished`]. The files of a killed process

@@ -222,9 +222,9 @@ fn scratch_folders_created_concurrently_do_not_remove_each_other() {
         for _ in 0..8 {
             threads.spawn(|| {
                 for _ in 0..200 {
-                    let folder = ScratchFolder::new(".scratch-", base.path()).expect("the file can be written");
+                    let folder = ScratchFolder::new(".scratch-", base.path()).expect("the folder is writable");
                     assert!(folder.path().is_dir(), "another thread removed it");
-                    fs::write(folder.path().join("file"), "text").expect("it is there");
+                    fs::write(folder.path().join("file"), "text").expect("the folder is writable");
                 }
             });
         }

@@ -1,5 +1,5 @@
-//! A process that is stopped removes its unfinished files. This test has a program to itself, because afterwards no
-//! file can be started.
+//! A process that is stopped removes its unfinished files. This test is a program of its own, because afterwards the
+//! process cannot start another file.
 
 use std::fs;
 use std::io::Write;

@@ -1,1 +1,1 @@
-//! Holds no code: its `Cargo.toml` asks the same features of shared dependencies, whatever part of Driftworld is built.
+//! Contains no code: its `Cargo.toml` enables the same features of shared dependencies, whichever part of Driftworld is built.

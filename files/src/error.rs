@@ -37,7 +37,7 @@ pub enum FileError {
         limit: u64,
     },
     /// The file is not UTF-8 text.
-    #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as such", path.shown())]
+    #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as UTF-8", path.shown())]
     NotText {
         /// The file's path.
         path: PathBuf,
@@ -80,8 +80,8 @@ impl FileError {
 fn advice(found: &str) -> &'static str {
     match found {
         "a folder" => "name a file in it",
-        "a link that leads nowhere" => "mend the link, or name a file",
-        _ => "write what it gives into a file, and name that",
+        "a link that leads nowhere" => "fix the link, or name a file",
+        _ => "save its content in a file, and name that file",
     }
 }
 
@@ -115,12 +115,12 @@ mod tests {
         check(
             not_a_file("a named pipe"),
             "files/not-a-file",
-            "a.json: found a named pipe, expected a regular file; write what it gives into a file, and name that",
+            "a.json: found a named pipe, expected a regular file; save its content in a file, and name that file",
         );
         check(
             not_a_file("a link that leads nowhere"),
             "files/not-a-file",
-            "a.json: found a link that leads nowhere, expected a regular file; mend the link, or name a file",
+            "a.json: found a link that leads nowhere, expected a regular file; fix the link, or name a file",
         );
         check(
             FileError::TooLarge {
@@ -138,7 +138,7 @@ mod tests {
                 line: 2,
             },
             "files/not-text",
-            "a.json: byte 7 (line 2) is not UTF-8, expected UTF-8 text; save it as such",
+            "a.json: byte 7 (line 2) is not UTF-8, expected UTF-8 text; save it as UTF-8",
         );
     }
 }

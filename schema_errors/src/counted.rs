@@ -17,8 +17,8 @@ pub(super) struct Tally {
     limit: usize,
     errors: AtomicUsize,
     /// Number of times a value was accessed.
-    looks: AtomicUsize,
-    /// Whether a list or object was left before its end.
+    accesses: AtomicUsize,
+    /// Whether the rest of a list or object was skipped.
     stopped: AtomicBool,
 }
 
@@ -27,7 +27,7 @@ impl Tally {
         Self {
             limit,
             errors: AtomicUsize::new(0),
-            looks: AtomicUsize::new(0),
+            accesses: AtomicUsize::new(0),
             stopped: AtomicBool::new(false),
         }
     }
@@ -55,8 +55,8 @@ impl<'a> Counted<'a> {
         self.tally.map_or(0, |tally| tally.errors.load(Relaxed))
     }
 
-    fn looks(&self) -> usize {
-        self.tally.map_or(0, |tally| tally.looks.load(Relaxed))
+    fn accesses(&self) -> usize {
+        self.tally.map_or(0, |tally| tally.accesses.load(Relaxed))
     }
 
     /// Maximum number of errors listed for one list or object.
@@ -65,9 +65,9 @@ impl<'a> Counted<'a> {
     }
 
     /// The value; counts the access.
-    fn looked_at(&self) -> &'a Value {
+    fn accessed(&self) -> &'a Value {
         if let Some(tally) = self.tally {
-            tally.looks.fetch_add(1, Relaxed);
+            tally.accesses.fetch_add(1, Relaxed);
         }
         self.value
     }
@@ -97,31 +97,31 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     type Number = &'a Number;
 
     fn as_object(&self) -> Option<Self> {
-        self.looked_at().is_object().then_some(*self)
+        self.accessed().is_object().then_some(*self)
     }
 
     fn as_array(&self) -> Option<Self> {
-        self.looked_at().is_array().then_some(*self)
+        self.accessed().is_array().then_some(*self)
     }
 
     fn as_string(&self) -> Option<Cow<'a, str>> {
-        self.looked_at().as_str().map(Cow::Borrowed)
+        self.accessed().as_str().map(Cow::Borrowed)
     }
 
     fn as_number(&self) -> Option<&'a Number> {
-        self.looked_at().as_number()
+        self.accessed().as_number()
     }
 
     fn as_boolean(&self) -> Option<bool> {
-        self.looked_at().as_bool()
+        self.accessed().as_bool()
     }
 
     fn is_null(&self) -> bool {
-        self.looked_at().is_null()
+        self.accessed().is_null()
     }
 
     fn json_type(&self) -> JsonType {
-        match self.looked_at() {
+        match self.accessed() {
             Value::Null => JsonType::Null,
             Value::Bool(_) => JsonType::Boolean,
             Value::Number(_) => JsonType::Number,
@@ -132,15 +132,15 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 
     fn string_length(&self) -> Option<u64> {
-        Some(self.looked_at().as_str()?.chars().count() as u64)
+        Some(self.accessed().as_str()?.chars().count() as u64)
     }
 
     fn equals_value(&self, expected: &Value) -> bool {
-        jsonschema::json::cmp::equal(self.looked_at(), expected)
+        jsonschema::json::cmp::equal(self.accessed(), expected)
     }
 
-    /// Counts errors: every error requests the value that it concerns. It gets `null`, because some errors keep a copy;
-    /// readers find the value by its path. Property names have no counter and are returned unchanged.
+    /// Counts errors: every error requests the value that it concerns. Returns `null`, because some errors keep a copy;
+    /// callers find the value by its path. Property names have no counter and are returned unchanged.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
             Some(tally) => {
@@ -163,7 +163,7 @@ pub(super) struct UntilFull<'a, I> {
     holder: Counted<'a>,
     before: usize,
     /// The access count when the last member was returned.
-    looks: usize,
+    accesses: usize,
     /// Number of members in a row that were never accessed.
     unseen: usize,
 }
@@ -174,7 +174,7 @@ impl<'a, I> UntilFull<'a, I> {
             inner,
             holder,
             before: holder.errors(),
-            looks: usize::MAX,
+            accesses: usize::MAX,
             unseen: 0,
         }
     }
@@ -214,9 +214,9 @@ impl<'a> Iterator for UntilFull<'a, serde_json::map::Iter<'a>> {
     type Item = (&'a str, Counted<'a>);
 
     fn next(&mut self) -> Option<Self::Item> {
-        let looks = self.holder.looks();
-        self.unseen = if looks == self.looks { self.unseen + 1 } else { 0 };
-        self.looks = looks;
+        let accesses = self.holder.accesses();
+        self.unseen = if accesses == self.accesses { self.unseen + 1 } else { 0 };
+        self.accesses = accesses;
         if self.is_full() || self.unseen > self.holder.limit() {
             return self.stop();
         }

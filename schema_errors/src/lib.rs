@@ -1,5 +1,5 @@
-//! Lists the errors of a JSON value against a JSON Schema in bounded memory. A separate crate, because it compiles the whole
-//! validator a second time, for values that count errors. It runs for invalid documents only, so it is not optimised.
+//! Lists the errors that a JSON Schema finds in a JSON value, in bounded memory. A separate crate, because it compiles the whole
+//! validator a second time, for values that count errors. It runs only for invalid documents, so it is not optimised.
 
 mod counted;
 

@@ -90,8 +90,8 @@ fn message_states_place_name_and_fault() {
     let error_for = |variant: &str| task(variant, "g").expect_err("the name is invalid").to_string();
     assert_eq!(
         error_for("con"),
-        "t.json:1:151 (/variants/con): found the name \"con\" with a word that Windows keeps for a device, expected a name that can be \
-         that of a file everywhere"
+        "t.json:1:151 (/variants/con): found the name \"con\" with a word that Windows reserves for devices, expected a valid file \
+         name on every system"
     );
     assert!(
         error_for("..").contains("(/variants/..): found the name \"..\", expected a name of letters, digits"),

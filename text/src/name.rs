@@ -11,7 +11,7 @@ use crate::printable::{is_unprintable, quoted};
 /// Maximum length of a name in characters.
 pub const MAX_NAME_CHARACTERS: usize = 100;
 
-/// Maximum length of a name in bytes of UTF-8: file systems allow 255, and extensions and numbers follow.
+/// Maximum length of a name in bytes of UTF-8: file systems allow 255, and extensions and numbers are appended.
 pub const MAX_NAME_BYTES: usize = 200;
 
 /// The part of the grammar that a JSON Schema pattern can express. [`check_name`] checks the rest: length in bytes,
@@ -53,20 +53,20 @@ pub enum NameFault {
     /// The name is not in NFC: characters are decomposed, or their marks are in a non-canonical order, so that two different names
     /// could look the same.
     NotNormalised,
-    /// Windows reserves the name for a device.
+    /// Windows reserves the name for a device, such as `con`.
     Device,
 }
 
 impl fmt::Display for NameFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => f.write_str("no character"),
+            Self::Empty => f.write_str("no characters"),
             Self::TooLong { characters, bytes } => write!(f, "{characters} characters, {bytes} bytes"),
             Self::Character(c) => write!(f, "the character {}", quoted(c.encode_utf8(&mut [0; 4]))),
             Self::Start(c) => write!(f, "{} at its beginning", quoted(c.encode_utf8(&mut [0; 4]))),
             Self::EndsWithDot => f.write_str("a dot at its end"),
             Self::NotNormalised => f.write_str("characters that are not in Unicode's composed form (NFC)"),
-            Self::Device => f.write_str("a word that Windows keeps for a device"),
+            Self::Device => f.write_str("a word that Windows reserves for devices"),
         }
     }
 }
@@ -80,7 +80,7 @@ impl NameFault {
             Self::Start(_) => "a letter, a digit or _ at the beginning of a name",
             Self::EndsWithDot => "a letter, a digit, _, - or + at the end of a name",
             Self::NotNormalised => "a name in NFC, the composed form that keyboards normally produce",
-            Self::Device => "a name that can be that of a file everywhere",
+            Self::Device => "a valid file name on every system",
         }
     }
 }

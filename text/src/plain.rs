@@ -34,7 +34,7 @@ pub fn in_plain_words(message: impl Display) -> String {
             continue;
         }
         let mut words: Vec<&str> = part.split(' ').collect();
-        // In `struct Name` and `internally tagged enum Name` the type's name follows.
+        // The type's name follows: `struct Name`, `internally tagged enum Name`.
         while let Some(at) = words.iter().position(|word| ["struct", "enum"].contains(word)) {
             let qualifiers = words[..at]
                 .iter()
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn serde_kinds_become_plain_words() {
-        for (reworded, expected) in [
+        for (message, expected) in [
             (
                 "invalid type: map, expected u64 at line 2",
                 "invalid type: an object, expected a whole number at line 2",
@@ -85,7 +85,7 @@ mod tests {
             ),
             ("expected internally tagged enum Line", "expected an object"),
         ] {
-            assert_eq!(in_plain_words(reworded), expected);
+            assert_eq!(in_plain_words(message), expected);
         }
     }
 }

@@ -39,7 +39,7 @@ const UNPRINTABLE: [(char, char); 27] = [
     ('\u{e0000}', '\u{e01ef}'),
 ];
 
-/// Whether a terminal treats this character as a control code or does not show it. True for line feed and tab.
+/// Whether a terminal treats this character as a control code or does not show it. Line feed and tab are included.
 pub fn is_unprintable(c: char) -> bool {
     // Almost all text is ASCII.
     if matches!(c, ' '..='~') {
@@ -178,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// Strings in which about every third character is unprintable.
+    /// Strings in which about one character in three is unprintable.
     fn texts() -> impl Strategy<Value = String> {
         let hostile = (0..UNPRINTABLE.len(), any::<u8>()).prop_map(|(range, offset)| {
             let (first, last) = UNPRINTABLE[range];

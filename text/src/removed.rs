@@ -19,7 +19,7 @@ pub enum WordKind {
     Order,
 }
 
-const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/interoperate.md makes Parquet of either";
+const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/interoperate.md converts either to Parquet";
 
 /// Every removed word: its kind, the word, what to use instead.
 const REMOVED: &[(WordKind, &str, &str)] = &[
@@ -40,7 +40,7 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (
         Flag,
         "convert --to",
-        "no --to: worlds and scenarios are written in Driftworld's form",
+        "no --to: worlds and scenarios are written in Driftworld's own format",
     ),
     (Flag, "curriculum --method", "--order"),
     (Flag, "order --method", "--order"),

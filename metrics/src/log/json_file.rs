@@ -154,7 +154,7 @@ mod tests {
         check("\u{feff}{}".as_bytes(), "read");
         check(
             b"\xff\xfe{\0}\0",
-            ":1:1: byte 0 is not UTF-8, expected UTF-8 text; save it as such",
+            ":1:1: byte 0 is not UTF-8, expected UTF-8 text; save it as UTF-8",
         );
     }
 }

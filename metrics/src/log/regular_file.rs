@@ -41,7 +41,7 @@ fn as_metrics_error(error: FileError) -> MetricsError {
             path,
             line,
             column: 1,
-            wrong: format!("byte {at} is not UTF-8, expected UTF-8 text; save it as such"),
+            wrong: format!("byte {at} is not UTF-8, expected UTF-8 text; save it as UTF-8"),
         },
         FileError::TooLarge { path, found, limit } => MetricsError::too_large(path, "bytes or more", found, limit),
         other => MetricsError::Io {

@@ -192,7 +192,7 @@ mod tests {
         check("{\"a\": 1e999}", "d.json:1:11: not valid JSON: number out of range");
         check(
             &"[".repeat(1000),
-            "d.json:1:128: not valid JSON: lists and objects stand in each other more than 127 deep; is a bracket missing?",
+            "d.json:1:128: not valid JSON: lists and objects are nested more than 127 deep; is a bracket missing?",
         );
     }
 

@@ -6,7 +6,7 @@ mod value;
 pub use places::{Wanted, escape, last_key, offsets, repeated};
 pub use value::{Repeats, Stop, parse};
 
-/// Maximum length of a key in bytes. Longer keys would appear in every pointer to a value below them.
+/// Maximum length of a key in bytes: every pointer to a value below a key contains the key.
 pub const MAX_KEY_BYTES: usize = 400;
 
 /// Maximum depth of nested lists and objects: `serde_json`'s limit, which keeps hostile text from overflowing the stack.
@@ -26,7 +26,7 @@ pub fn reason(text: &str, error: &serde_json::Error) -> String {
     } else if rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#') {
         reason.push_str("; JSON has no comments, write a \"description\" instead");
     } else if reason == "recursion limit exceeded" {
-        reason = format!("lists and objects stand in each other more than {MAX_DEPTH} deep; is a bracket missing?");
+        reason = format!("lists and objects are nested more than {MAX_DEPTH} deep; is a bracket missing?");
     } else if text.trim().is_empty() {
         "the document is empty".clone_into(&mut reason);
     } else if reason.starts_with("EOF") {

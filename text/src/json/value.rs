@@ -64,7 +64,7 @@ impl Builder {
 
     fn stop<E: Error>(&self, stop: Stop) -> E {
         self.stop.set(Some(stop));
-        E::custom("not read further")
+        E::custom("stopped by a limit")
     }
 }
 
@@ -179,7 +179,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
     }
 }
 
-/// Number of items or entries from which a list or object counts as long.
+/// Minimum number of items or entries of a long list or object.
 const LONG: usize = 4096;
 
 #[cfg(test)]
