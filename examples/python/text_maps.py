@@ -122,7 +122,7 @@ class Map:
         columns = max(map(len, self.rows), default=0)
         self.rows = [row + ["#"] * (columns - len(row)) for row in self.rows]
         if not any(self.is_open(column, row) for row in range(len(self.rows)) for column in range(columns)):
-            sys.exit(f"error: {self.name}: found no free cell, expected a letter that is floor")
+            sys.exit(f"error: {self.name}: found no free cell, expected at least one letter for floor")
         used = {letter for row in self.rows for letter in row}
         layout = {
             "text": ["".join(row) for row in self.rows],

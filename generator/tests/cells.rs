@@ -170,7 +170,7 @@ fn meaningless_placements_in_cells_are_rejected() {
     assert!(error_for("{}", "").contains("(/groups/1): found nothing, expected the key \"placement\""));
     assert!(error_for("{}", cells).contains("(/groups/1/placement): found cells in a world without a layout"));
     assert_eq!(error_for(maze, cells), "");
-    assert!(error_for(maze, &format!(r#"{cells}, "around": "a""#)).contains("cells beside \"around\""));
+    assert!(error_for(maze, &format!(r#"{cells}, "around": "a""#)).contains("cells with \"around\""));
     let mixed = r#", "placement": { "mixture": { "parts": [{ "cells": {} }, { "disc": { "center": [0, 0], "radius": 1 } }] } }"#;
     assert!(
         error_for(maze, mixed).contains("found cells in a mixture"),

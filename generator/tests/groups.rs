@@ -373,7 +373,7 @@ fn list_too_short_for_its_group_is_refused_on_loading() {
     assert_eq!(error_for(near, "2"), None);
     let message = error_for(near, "3").expect("only two are 3 m apart");
     assert!(
-        message.contains("4 places, of which 2 are free in turn 3 m apart"),
+        message.contains("4 places, with room for 2 objects 3 m apart"),
         "{message}"
     );
     assert!(error_for(near, r#"{ "integer_uniform": { "low": 3, "high": 5 } }"#).is_some());

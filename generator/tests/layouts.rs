@@ -182,7 +182,7 @@ fn invalid_layout_is_refused_with_its_json_pointer() {
             "/maze/cels",
             "did you mean \"cells\"?",
         ),
-        (r##"{ "text": ["#. ", "#"] }"##, "/text/1", "3, as the first line has"),
+        (r##"{ "text": ["#. ", "#"] }"##, "/text/1", "3, as in the first line"),
     ] {
         let error = fixed(layout);
         assert!(

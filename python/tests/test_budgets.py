@@ -128,5 +128,5 @@ def test_budget_resumes_after_a_kill(tmp_path: Path, num_envs: int) -> None:
 def test_budget_applies_to_learning_only() -> None:
     wrong = scenario({"lava": 50})
     wrong["blocks"][1]["regimes"][0]["steps"] = 5
-    with pytest.raises(SpecError, match="/blocks/1/regimes/0/steps.*: found 5, expected none in an evaluation or a drift"):
+    with pytest.raises(SpecError, match="/blocks/1/regimes/0/steps.*: found 5, expected no step budget in an evaluation or a drift"):
         Curriculum.from_dict(wrong)

@@ -176,7 +176,7 @@ def test_warnings_are_about_the_current_world() -> None:
         "objects": [{"class": "switch", "coordinates": [2, 2], "switch": {"target": "nothing"}}],
     }
     assert DriftworldEnv(world=world).warnings() == [
-        '/objects/0/switch/target: no door has the tag "nothing"; the switch moves nothing'
+        '/objects/0/switch/target: no door has the tag "nothing"; the switch has no effect'
     ]
     del world["objects"]
     assert DriftworldEnv(world=world).warnings() == []

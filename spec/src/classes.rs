@@ -48,7 +48,7 @@ impl Classes {
         }
     }
 
-    /// Also refuses models that a class does not have.
+    /// Also rejects models that a class does not have.
     #[must_use]
     pub fn with_models(mut self, models: impl Models + 'static) -> Self {
         self.models = Some(Arc::new(models));

@@ -43,7 +43,7 @@ impl Color {
         format!("{red:02x}{green:02x}{blue:02x}")
     }
 
-    /// The CSS name of exactly this colour, else `[r, g, b]` with two decimals: for people to read.
+    /// The CSS name of exactly this colour, otherwise `[r, g, b]` with two decimals; for messages.
     pub fn describe(self) -> String {
         let name = Self::names()
             .into_iter()
@@ -85,7 +85,7 @@ impl<'de> Visitor<'de> for ColorVisitor {
             return Err(A::Error::invalid_length(4, &self));
         }
         if channels.iter().any(|c: &f64| !(0.0..=1.0).contains(c)) {
-            return Err(A::Error::custom("a colour channel lies outside 0..1"));
+            return Err(A::Error::custom("a colour channel is outside 0..1"));
         }
         Ok(Color(channels))
     }

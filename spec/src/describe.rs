@@ -47,7 +47,7 @@ fn fits_text(text: &str, room: &mut usize) -> bool {
     fits
 }
 
-/// A number as people read it: very large and very small numbers with an exponent.
+/// A number for messages; very large and very small numbers have an exponent.
 pub(crate) fn plain_number(number: f64) -> String {
     if number != 0.0 && !(1e-6..1e15).contains(&number.abs()) {
         format!("{number:e}")

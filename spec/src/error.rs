@@ -71,7 +71,7 @@ impl Problem {
         self
     }
 
-    /// Adds «did you mean …?» if one of the known words is similar to the one found.
+    /// Adds "did you mean …?" if one of the known words is similar to the one found.
     pub(crate) fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
         match nearest(word, known) {
             Some(near) => self.advise(format!("did you mean {near:?}?")),
@@ -169,7 +169,7 @@ pub enum SpecError {
     /// A variant cannot have the requested values.
     #[error("{}", list(variant, problems, false))]
     Values {
-        /// The variant's name, with its task's.
+        /// The name of the variant, including that of its task.
         variant: String,
         /// All problems.
         problems: Vec<Problem>,

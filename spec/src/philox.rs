@@ -1,6 +1,6 @@
 //! Philox4x64-10: a counter-based random number generator with four 64-bit numbers per counter.
 //!
-//! Source: Salmon et al. 2011, «Parallel random numbers: as easy as 1, 2, 3». Implemented here because no maintained crate
+//! Source: Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3". Implemented here because no maintained crate
 //! provides it and it fits on one screen; it passes the published test vectors.
 
 /// The four random numbers for a counter and a key.

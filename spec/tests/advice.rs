@@ -10,7 +10,7 @@ use serde_json::Value;
 /// Phrases that precede a value spelt out in advice.
 const BEFORE_A_VALUE: [&str; 4] = [
     "drop the quotes: ",
-    "write the number alone: ",
+    "write only the number: ",
     "divide by 255: ",
     "write ",
 ];

@@ -333,7 +333,7 @@ fn unreachable_cells_get_a_remark() {
         remarks.iter().map(ToString::to_string).collect::<Vec<_>>(),
         [
             "w.json:1:1 (/agent_params/coordinates): the agent starts inside wall 3 of 5 of the layout",
-            "w.json:2:12 (/environment_params/layout): of 2 free cells 1 cannot be reached from the others; open a way to them, or fill them up"
+            "w.json:2:12 (/environment_params/layout): 1 of 2 free cells cannot be reached from the others; open a way to them, or turn them into walls"
         ]
     );
 }

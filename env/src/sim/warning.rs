@@ -27,7 +27,7 @@ pub enum Warning {
         object: usize,
     },
     /// The object is inside a wall or a region that cannot be entered, out of reach.
-    #[strum(to_string = "/objects/{object}/coordinates: found a place inside {enclosure}; it is kept, out of reach")]
+    #[strum(to_string = "/objects/{object}/coordinates: found a place inside {enclosure}; it is kept but unreachable")]
     StandsInWall {
         /// Index of the object.
         object: usize,

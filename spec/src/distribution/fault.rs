@@ -33,7 +33,7 @@ impl Distribution<f64> {
                 unless(
                     is_valid,
                     found,
-                    "std above 0, low below high, and the range within 6 std of the mean",
+                    "std above 0, low below high, and a range that reaches within 6 std of the mean",
                 )
             }
             Self::LogNormal { mu, sigma } => {
@@ -106,7 +106,7 @@ impl Distribution<f64> {
             unless(
                 is_valid,
                 format!("{name} {:?}", spread.to_array()),
-                "a spread of channels in 0..10",
+                "a channel spread in 0..10",
             )
         };
         match self {
@@ -270,7 +270,7 @@ fn gaussian(std: Option<&Spread>, correlation: Option<f64>, covariance: Option<&
             unless(
                 is_valid,
                 found,
-                "a symmetric matrix without negative eigenvalues, and no correlation beside it",
+                "a symmetric matrix without negative eigenvalues, and no correlation",
             )
         }
     }
@@ -308,7 +308,7 @@ mod tests {
 {"gaussian": {"mean": [0, 0]}} => one of std and covariance
 {"gaussian": {"mean": [0, 0], "std": [1, 2], "correlation": 0.5}} => sound
 {"gaussian": {"mean": [0, 0], "covariance": [[4, 1], [1, 2]]}} => sound
-{"gaussian": {"mean": [0, 0], "covariance": [[1, 2], [2, 1]]}} => a symmetric matrix without negative eigenvalues, and no correlation beside it
+{"gaussian": {"mean": [0, 0], "covariance": [[1, 2], [2, 1]]}} => a symmetric matrix without negative eigenvalues, and no correlation
 {"exponential": {"rate": 0}} => a rate above 0
 {"geometric": {"p": 0}} => a probability in 0.000000001..1
 {"poisson_disc": {"low": [0, 0], "high": [1, 1], "distance": 0}} => a distance above 0, at most 600 m
@@ -324,8 +324,8 @@ mod tests {
 {"color_uniform": {"from": "red", "to": "blue"}} => sound
 {"color_uniform": {"from": "red", "to": [0, 2, 0]}} => a colour with channels in 0..1
 {"color_normal": {"mean": [-1, 0, 0], "std": 0}} => a colour with channels in 0..1
-{"color_normal": {"mean": "red", "std": [0, 0, -1]}} => a spread of channels in 0..10
-{"color_perturb": {"value": "red", "noise": 11}} => a spread of channels in 0..10
+{"color_normal": {"mean": "red", "std": [0, 0, -1]}} => a channel spread in 0..10
+{"color_perturb": {"value": "red", "noise": 11}} => a channel spread in 0..10
 {"color_perturb": {"value": "red", "noise": 1, "low": [0, 0, 3]}} => a colour with channels in 0..1
 {"color_perturb": {"value": "red", "noise": 1, "low": "gray", "high": "red"}} => low not above high in any channel
 {"color_hsv": {"hue": [350, 370]}} => sound

@@ -46,7 +46,7 @@ impl Distribution<f64> {
         })
     }
 
-    /// Exact mean and covariance: of one round for points taken in turn, and ignoring the spacing of a `poisson_disc`. `None`
+    /// Exact mean and covariance: of one pass for points taken in turn, and ignoring the spacing of a `poisson_disc`. `None`
     /// if it draws no points.
     pub fn planar_moments(&self) -> Option<Moments<2>> {
         let points = |points: &[[f64; 2]], weights: Option<&[f64]>| {

@@ -32,7 +32,7 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// `places` places, at least 1, all free.
+    /// Starts with this number of free places, at least 1.
     pub fn new(places: usize) -> Self {
         Self {
             places: places.max(1),

@@ -15,7 +15,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.973_906_528_517_171_72, 0.066_671_344_308_688_14),
 ];
 
-/// Number of intervals that a half turn is split into.
+/// Number of intervals into which one side of the density is split.
 const NUM_INTERVALS: u32 = 8;
 
 /// Half-width of the range outside which the probability is below 1e-17.

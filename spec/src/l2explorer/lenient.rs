@@ -63,7 +63,7 @@ impl Reader {
             let at = place_of(&place, index, items.len());
             match stimulus(word) {
                 Some(name) if names.contains(&name) => {
-                    let text = format!("{found} stands there already and is left out");
+                    let text = format!("{found} is already in the list and is left out");
                     self.warn(format!("{place}/{index}"), text);
                 }
                 Some(name) => {

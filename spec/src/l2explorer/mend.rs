@@ -101,7 +101,7 @@ impl Reader {
     /// A part of the file, if it is an object; anything else is dropped with a warning.
     pub(super) fn part(&mut self, map: &mut Map<String, Json>, key: &str) -> Option<Map<String, Json>> {
         match map.get_mut(key)? {
-            // The caller puts the repaired part in its place.
+            // The caller reinserts the repaired part.
             Json::Object(part) => Some(std::mem::take(part)),
             other => {
                 self.warn_instead(format!("/{key}"), other, "an object; its defaults are assumed");

@@ -43,7 +43,7 @@ impl World {
         let (mut document, repeated) = Document::parse_leniently(name, text, MAX_WORLD_VALUES)?;
         let mut reader = Reader::default();
         for pointer in repeated {
-            reader.warn(pointer, "the key stands twice; the last one counts");
+            reader.warn(pointer, "the key is repeated; its last value counts");
         }
         // Each part is replaced as soon as it is read, so that a large world is not in memory twice.
         document.value = reader.world(std::mem::take(&mut document.value));
@@ -194,7 +194,7 @@ impl Reader {
                 }
                 renamed.insert(name.to_owned(), value);
             } else {
-                self.warn(place, format!("{name:?} is given already; the first one counts"));
+                self.warn(place, format!("{name:?} is already given; the first value counts"));
             }
         }
         renamed
@@ -231,7 +231,7 @@ impl Reader {
         if agent.shift_remove("pickup_range").is_some() {
             self.warn(
                 format!("{at}/pickup_range"),
-                "pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
+                "pickup_range is an obsolete key and is left out; an interaction reaches 1 m ahead",
             );
         }
         self.heading(at, agent);
@@ -269,7 +269,7 @@ pub(super) mod tests {
                 "map.json:1:83 (/environment_params/lightIntensity): the key \"lightIntensity\" is read as \"light_intensity\"",
                 "map.json:1:106 (/environment_params/predefined_map): the text \"1\" is read as a number",
                 "map.json:2:74 (/agent_params/initial_coordinates): the key \"initial_coordinates\" is read as \"coordinates\"",
-                "map.json:2:98 (/agent_params/pickup_range): pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
+                "map.json:2:98 (/agent_params/pickup_range): pickup_range is an obsolete key and is left out; an interaction reaches 1 m ahead",
                 "map.json:2:112 (/agent_params/heading): the heading -90 is read as 270",
             ]
         );
@@ -304,10 +304,7 @@ pub(super) mod tests {
         assert_eq!(tree.reward_once_stimulus, [Stimulus::AgentInRange]);
         assert_eq!(tree.destroy_stimulus, [Stimulus::AgentInteract]);
         assert_eq!(warnings.len(), 3, "{warnings:?}");
-        assert!(
-            warnings[2].contains("random_waypoint comes without a speed"),
-            "{warnings:?}"
-        );
+        assert!(warnings[2].contains("random_waypoint has no speed"), "{warnings:?}");
         assert!(warnings[0].ends_with("(/environment_params/map_size): the text \"50\" is read as a number"));
         assert!(warnings[1].ends_with("(/agent_params/observation_size): the text \"64\" is read as a number"));
     }
@@ -354,13 +351,13 @@ pub(super) mod tests {
             "map.json:3:121 (/objects/1/reward): found null, expected a number from -1000000000 to 1000000000; the default 0 is assumed",
             "map.json:3:142 (/objects/1/unique_name): found 7, expected a string of 1 to 100 characters; \"7\" is assumed",
             "map.json:4:5 (/objects/2): an object without coordinates is put at (0, 0)",
-            "map.json:4:40 (/objects/2/motion_model): prey comes without a speed; 2 m/s is assumed, our key \"speed\" sets another",
+            "map.json:4:40 (/objects/2/motion_model): prey has no speed; 2 m/s is assumed, our key \"speed\" sets another",
             "map.json:4:68 (/objects/2/reward_stimulus/0): \"collision\" is read as \"AgentCollide\"",
             "map.json:4:81 (/objects/2/reward_stimulus/1): found \"smell\", expected AgentCollide, AgentInteract or AgentInRange; it is left out",
-            "map.json:4:90 (/objects/2/reward_stimulus/2): \"AgentCollide\" stands there already and is left out",
-            "map.json:4:120 (/objects/2/reward_on): reward_on \"collision\" is left out, for there is a reward_stimulus",
+            "map.json:4:90 (/objects/2/reward_stimulus/2): \"AgentCollide\" is already in the list and is left out",
+            "map.json:4:120 (/objects/2/reward_on): reward_on \"collision\" is left out, because there is a reward_stimulus",
             "map.json:5:39 (/objects/3/coordinates): found [1,2,3], expected two numbers from -300 to 300; [1, 2] is assumed",
-            "map.json:5:65 (/objects/3/unique_name): the name \"7\" is another object's already; it is left out",
+            "map.json:5:65 (/objects/3/unique_name): another object already has the name \"7\"; it is left out",
             "map.json:5:83 (/objects/3/reward_on): reward_on \"Collision\" is read as reward_stimulus [\"AgentCollide\"]",
             "map.json:5:111 (/objects/3/collectible): found \"True\", expected true or false; true is assumed",
             "map.json:5:143 (/objects/3/interaction_distance): found \"\", expected a number from 0 to 1000; it is left out",

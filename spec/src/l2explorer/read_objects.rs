@@ -35,7 +35,7 @@ impl Reader {
             if let Some(Json::String(name)) = object.get("unique_name")
                 && !names.insert(name.clone())
             {
-                let text = format!("the name {name:?} is another object's already; it is left out");
+                let text = format!("another object already has the name {name:?}; it is left out");
                 self.warn(format!("{at}/unique_name"), text);
                 object.shift_remove("unique_name");
             }
@@ -88,8 +88,7 @@ impl Reader {
         let Some(model) = model.filter(|model| *model != "stationary" && !object.contains_key("speed")) else {
             return;
         };
-        let text =
-            format!("{model} comes without a speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
+        let text = format!("{model} has no speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
         self.warn(format!("{at}/motion_model"), text);
         object.insert("speed".into(), json!(ASSUMED_SPEED));
     }
@@ -135,7 +134,7 @@ impl Reader {
         }
         if object.contains_key("reward_stimulus") {
             text = format!(
-                "reward_on {} is left out, for there is a reward_stimulus",
+                "reward_on {} is left out, because there is a reward_stimulus",
                 describe(&reward_on)
             );
         }
@@ -192,9 +191,9 @@ mod tests {
         assert_eq!(
             warnings[1..],
             [
-                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-20.0, 70.0), inside region 1 of 13 of map 2 (village); it is kept, out of reach",
-                "map.json:2:99 (/objects/2/coordinates): the bag stands at (8.0, 1.0), inside the wall /environment_params/walls/0; it is kept, out of reach",
-                "map.json:3:81 (/objects/4/coordinates): the car stands at (0.0, 101.0), outside the 200 × 200 m arena; it is kept, out of reach",
+                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-20.0, 70.0), inside region 1 of 13 of map 2 (village); it is kept but unreachable",
+                "map.json:2:99 (/objects/2/coordinates): the bag stands at (8.0, 1.0), inside the wall /environment_params/walls/0; it is kept but unreachable",
+                "map.json:3:81 (/objects/4/coordinates): the car stands at (0.0, 101.0), outside the 200 × 200 m arena; it is kept but unreachable",
             ]
         );
     }

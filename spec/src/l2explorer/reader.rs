@@ -1,5 +1,5 @@
-//! [`Reader`]: the state of reading one reset file: its warnings, and which place in the file each place in the
-//! world comes from.
+//! [`Reader`]: the state of reading one reset file: the warnings, and the map from places in the world to places in
+//! the file.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ pub(super) struct Reader {
     pub(super) warnings: Remarks,
     /// For each object of the world, its index in the file.
     pub(super) kept: Vec<usize>,
-    /// Entries with keys that the file spells differently: from pointers with our names to pointers into the file.
+    /// Keys that the file spells differently: maps pointers with our names to pointers into the file.
     pub(super) spelled: BTreeMap<String, String>,
 }
 

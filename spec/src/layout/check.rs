@@ -29,7 +29,7 @@ impl Layout {
             ("legend", "text", !self.legend.is_empty()),
         ];
         for (key, ..) in keys.into_iter().filter(|(_, owner, is_here)| *is_here && owner != kind) {
-            let expected = "no such key beside ".to_owned() + kind;
+            let expected = "no such key with ".to_owned() + kind;
             let problem = Problem::new(
                 "spec/layout-kind",
                 format!("{POINTER}/{key}"),
@@ -66,7 +66,7 @@ impl Layout {
                         "doorways of {} m and walls of {} m in rooms of {shorter} m",
                         rooms.doorway, rooms.wall
                     );
-                    let expected = "together at most the side of a room";
+                    let expected = "a sum of at most the side of a room";
                     problems.push(problem("spec/no-corridor", "rooms/doorway", found, expected));
                 }
                 problems.extend(self.too_large("rooms/grid"));
@@ -119,9 +119,9 @@ impl Layout {
             let place = format!("text/{number}");
             let letters = row.chars().count();
             if letters != columns {
-                let expected = format!("{columns}, as the first line has");
+                let expected = format!("{columns}, as in the first line");
                 let text = problem("spec/ragged-text", &place, format!("{letters} letters"), expected);
-                problems.push(text.advise("fill the line up with \"#\" or \" \""));
+                problems.push(text.advise("pad the line with \"#\" or \" \""));
             }
             let unknown = row.chars().find(|letter| self.meaning(*letter).is_none());
             if let Some(letter) = unknown {
@@ -146,8 +146,8 @@ impl Layout {
             problems.push(problem(
                 "spec/no-corridor",
                 "text",
-                "walls alone",
-                "a letter that is floor",
+                "only walls",
+                "at least one letter for floor",
             ));
         }
         problems
@@ -159,7 +159,7 @@ impl Layout {
         (cut_off > 0).then(|| {
             let all = plan.cells.len();
             format!(
-                "of {all} free cells {cut_off} cannot be reached from the others; open a way to them, or fill them up"
+                "{cut_off} of {all} free cells cannot be reached from the others; open a way to them, or turn them into walls"
             )
         })
     }
@@ -184,19 +184,19 @@ fn wall_problem((index, wall): (usize, &LayoutWall)) -> Option<Problem> {
         ["from"] => match (wall.from, wall.to) {
             (Some(from), Some(to)) if from == to => {
                 let found = format!("a segment from {from:?} to itself");
-                Some(problem("spec/value", &place, found, "two places"))
+                Some(problem("spec/value", &place, found, "two different points"))
             }
             (Some(_), Some(_)) => None,
             (None, _) => Some(problem("spec/missing-key", &place, "nothing", "the key \"from\"")),
             (_, None) => Some(problem("spec/missing-key", &place, "nothing", "the key \"to\"")),
         },
         [form] if wall.thickness.is_some() => {
-            let found = format!("\"thickness\" beside {form:?}");
+            let found = format!("\"thickness\" with {form:?}");
             Some(problem(
                 "spec/layout-kind",
                 &format!("{place}/thickness"),
                 found,
-                "it beside from and to",
+                "it only with from and to",
             ))
         }
         [_] => None,

@@ -118,13 +118,13 @@ impl<'a> DeclaredVariant<'a> {
         let (name, values) = (format!("{}/name", self.pointer), format!("{}/values", self.pointer));
         match (self.name, self.values.is_empty()) {
             (Some(found), true) => {
-                let found = format!("the name {found:?} and no values");
+                let found = format!("the name {found:?} without values");
                 let problem = Problem::new("spec/value", name, found, "a name together with values");
                 Some(problem.advise("remove it: the variant has a name of its own"))
             }
             (None, false) => {
-                let problem = Problem::new("spec/missing-key", values, "values and no name", "the key \"name\"");
-                Some(problem.advise("give the variant that they make a name"))
+                let problem = Problem::new("spec/missing-key", values, "values without a name", "the key \"name\"");
+                Some(problem.advise("name the variant that has these values"))
             }
             _ => None,
         }
@@ -145,7 +145,7 @@ fn alone(scenario: &Scenario) -> Vec<Problem> {
         }
         if regime.first_index.checked_add(u64::from(regime.count)).is_none() {
             let found = regime.first_index.to_string();
-            let expected = "an index that leaves room for count more";
+            let expected = "an index to which count can be added";
             problems.push(Problem::new(
                 "spec/range",
                 format!("{pointer}/first_index"),
@@ -157,7 +157,7 @@ fn alone(scenario: &Scenario) -> Vec<Problem> {
             let key = if regime.drift.is_some() { "drift" } else { "values" };
             let found = format!("a world file and {key}");
             let problem = Problem::new("spec/value", format!("{pointer}/{key}"), found, "one of the two");
-            problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
+            problems.push(problem.advise("a world file is used unchanged: edit the file instead"));
             continue;
         }
         if let Some((drift, task)) = regime
@@ -171,9 +171,9 @@ fn alone(scenario: &Scenario) -> Vec<Problem> {
                 "spec/value",
                 pointer,
                 format!("{task:?}"),
-                "\"switch\": \"task\" beside it",
+                "\"switch\": \"task\" with it",
             );
-            problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
+            problems.push(problem.advise("different tasks cannot be interpolated: only whole variants can switch"));
             continue;
         }
         let fault = declared_variants(&pointer, regime).find_map(|variant| {
@@ -189,8 +189,8 @@ fn alone(scenario: &Scenario) -> Vec<Problem> {
         for variant in declared_variants(&pointer, regime) {
             let key = (variant.task, variant.label());
             if let Some(first) = named.get(&key).filter(|first| !variant.is_same(first)) {
-                let found = format!("{:?}, which is another variant at {}", variant.label(), first.pointer);
-                let expected = "one variant of a task under each name";
+                let found = format!("{:?}, which another variant has at {}", variant.label(), first.pointer);
+                let expected = "a different name for each variant of a task";
                 problems.push(Problem::new("spec/value", variant.pointer_to_name(), found, expected));
             }
             named.entry(key).or_insert(variant);
@@ -207,8 +207,8 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
     let late =
         |(b, block): &(usize, &Block)| block.phase == Phase::PreDeployment && first.is_some_and(|first| first < *b);
     let problem = |(b, _)| {
-        let found = format!("a block before deployment after block {}", first.unwrap_or(0));
-        let expected = "all blocks before deployment ahead of the others";
+        let found = format!("a pre-deployment block after block {}", first.unwrap_or(0));
+        let expected = "all pre-deployment blocks before the others";
         Problem::new("spec/value", format!("/blocks/{b}/phase"), found, expected).advise("move the block up")
     };
     scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
@@ -220,9 +220,9 @@ fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
     regimes(scenario).filter_map(|(pointer, block, regime)| {
         let is_fixed = block.kind == BlockKind::Evaluation || regime.drift.is_some();
         let steps = regime.steps.filter(|_| is_fixed)?;
-        let expected = "none in an evaluation or a drift";
+        let expected = "no step budget in an evaluation or a drift";
         let problem = Problem::new("spec/value", format!("{pointer}/steps"), steps.to_string(), expected);
-        Some(problem.advise("say with count how many experiences there are"))
+        Some(problem.advise("set the number of experiences with count"))
     })
 }
 
@@ -325,10 +325,10 @@ mod tests {
             r#"
 DIM =>
 DIM, DIM =>
-{ AT, "name": "dim" } => (0/name): found the name "dim" and no values, expected a name together with values; remove it
-{ AT, "values": { "light": 1 } } => (0/values): found values and no name, expected the key "name"
-DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim", which is another variant at 0
-{ AT, "values": { "light": 1 }, "name": "dusk" }, { DUSK } => (1/variant): found "dusk", which is another variant at 0"#,
+{ AT, "name": "dim" } => (0/name): found the name "dim" without values, expected a name together with values; remove it
+{ AT, "values": { "light": 1 } } => (0/values): found values without a name, expected the key "name"
+DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim", which another variant has at 0
+{ AT, "values": { "light": 1 }, "name": "dusk" }, { DUSK } => (1/variant): found "dusk", which another variant has at 0"#,
         );
     }
 
@@ -338,13 +338,13 @@ DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim",
         check(
             r#"
 { AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "dim" } } =>
-{ AT, "drift": { "to": "day", "values": { "light": 1 } } } => (0/drift/values): found values and no name, expected the key "name"
-{ AT, "drift": { "to": "dusk", "name": "dim" } } => (0/drift/name): found the name "dim" and no values
-{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "day" } } => (0/drift/name): found "day", which is another variant at 0
-{ AT, "drift": { "to": "day", "task": "u" } } => (0/drift/task): found "u", expected "switch": "task" beside it; between two tasks
+{ AT, "drift": { "to": "day", "values": { "light": 1 } } } => (0/drift/values): found values without a name, expected the key "name"
+{ AT, "drift": { "to": "dusk", "name": "dim" } } => (0/drift/name): found the name "dim" without values
+{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "day" } } => (0/drift/name): found "day", which another variant has at 0
+{ AT, "drift": { "to": "day", "task": "u" } } => (0/drift/task): found "u", expected "switch": "task" with it; different tasks
 { AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "day", "task": "u", "switch": "task" } } =>
 { AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "dim" } }, DIM =>
-{ AT, "drift": { "to": "day", "values": { "light": 1.5 }, "name": "dim" } }, DIM => (1/name): found "dim", which is another variant at 0/drift"#,
+{ AT, "drift": { "to": "day", "values": { "light": 1.5 }, "name": "dim" } }, DIM => (1/name): found "dim", which another variant has at 0/drift"#,
         );
     }
 
@@ -353,10 +353,10 @@ DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim",
         check(
             r#"
 { YARD } =>
-{ YARD, "drift": { "to": "dusk" } } => (0/drift): found a world file and drift, expected one of the two; a world file is lived as it is
+{ YARD, "drift": { "to": "dusk" } } => (0/drift): found a world file and drift, expected one of the two; a world file is used unchanged
 { "task": "t", "variant": "a/yard", FILE } => (0/variant): found the name "a/yard" with the character "/", expected letters
 { "task": "=t", "variant": "yard", FILE } => (0/task): found the name "=t" with
-{ YARD }, { OTHER } => (1/variant): found "yard", which is another variant at 0"#,
+{ YARD }, { OTHER } => (1/variant): found "yard", which another variant has at 0"#,
         );
     }
 
@@ -387,8 +387,8 @@ DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim",
         let error = read([pre, "", pre]).unwrap_err().to_string();
         assert!(
             error.ends_with(
-                "(/blocks/2/phase): found a block before deployment after block 1, expected all blocks before \
-                 deployment ahead of the others; move the block up"
+                "(/blocks/2/phase): found a pre-deployment block after block 1, expected all pre-deployment \
+                 blocks before the others; move the block up"
             ),
             "{error}"
         );

@@ -104,7 +104,7 @@ pub enum DriftSwitch {
 }
 
 impl RegimeDrift {
-    /// A complete, even drift to a variant.
+    /// A complete linear drift to a variant.
     pub fn to(variant: impl Into<String>) -> Self {
         Self {
             to: variant.into(),

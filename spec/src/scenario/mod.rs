@@ -56,7 +56,7 @@ pub struct Scenario {
     /// Whether the learner gets the label of the task that it is in; by default it does not.
     #[serde(default, skip_serializing_if = "is_default")]
     pub task_label: TaskLabel,
-    /// Experimental evidence that its variants differ in one element only; for scenarios that probe an element.
+    /// Experimental evidence that its variants differ in only one element; for scenarios that probe an element.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proof: Option<ScenarioProof>,
     /// The blocks, in the order in which they are run.
@@ -120,7 +120,7 @@ pub enum ScenarioDifficulty {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TaskLabel {
-    /// It is not told.
+    /// It does not get the label.
     #[default]
     None,
     /// In the info, separate from its observations.

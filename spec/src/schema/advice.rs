@@ -50,7 +50,7 @@ fn for_number(text: &str) -> Option<String> {
     }
     let end = text.find(|c: char| !matches!(c, '0'..='9' | '.' | '-' | '+'))?;
     let number = finite(&text[..end])?;
-    Some(format!("write the number alone: {number}"))
+    Some(format!("write only the number: {number}"))
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn quoted_numbers_get_advice_without_quotes() {
         assert_eq!(for_number("+1.50").as_deref(), Some("drop the quotes: 1.5"));
-        assert_eq!(for_number("2 m").as_deref(), Some("write the number alone: 2"));
+        assert_eq!(for_number("2 m").as_deref(), Some("write only the number: 2"));
         assert_eq!(for_number("many"), None);
         assert_eq!(for_number("inf"), None);
     }

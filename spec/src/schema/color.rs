@@ -24,7 +24,7 @@ pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
                 problem.advise(format!("divide by 255: {}", triple(color)))
             }
             Some(four) if four.len() == 4 => {
-                problem.advise("remove the fourth number, a colour here is never transparent")
+                problem.advise("remove the fourth number: colours here are never transparent")
             }
             _ if items.len() == 3 => return None,
             _ => problem,
@@ -78,7 +78,7 @@ mod tests {
         check(&json!([255, 0, 51]), Some("divide by 255: [1, 0, 0.2]"));
         check(
             &json!([1, 0, 0, 1]),
-            Some("remove the fourth number, a colour here is never transparent"),
+            Some("remove the fourth number: colours here are never transparent"),
         );
         check(&json!([1, 0]), None);
         assert!(problem("/color", &json!([1.2, 0, 0])).is_none());

@@ -209,9 +209,9 @@ impl Explainer<'_> {
                 .schema
                 .pointer(&format!("{rule}/required/0"))
                 .and_then(Value::as_str);
-            let beside = beside.unwrap_or("what stands there");
+            let beside = beside.unwrap_or("the other key");
             return problem(
-                format!("no such key beside {beside:?}"),
+                format!("no such key with {beside:?}"),
                 "remove one of the two".to_owned(),
             );
         };
@@ -228,7 +228,7 @@ impl Explainer<'_> {
         } else {
             "remove it"
         };
-        problem(format!("no such key beside {condition:?}: {found}"), advice.to_owned())
+        problem(format!("no such key with {condition:?}: {found}"), advice.to_owned())
     }
 
     /// The roles whose parameters may have a key, according to the rules next to the one that forbids it.
@@ -254,7 +254,7 @@ pub(super) fn missing_key(pointer: &str, key: &str) -> Problem {
 fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
     let expected = match known {
         [] => "no further keys".to_owned(),
-        [only] => format!("no key beside {only:?}"),
+        [only] => format!("only the key {only:?}"),
         _ => format!("one of {}", known.join(", ")),
     };
     let problem = Problem::new(

@@ -56,7 +56,7 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
         }
         ValidationErrorKind::Pattern { pattern } => describe_pattern(pattern),
         ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
-        ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
+        ValidationErrorKind::UniqueItems => "no repeated values".to_owned(),
         _ => error.to_string(),
     }
 }
@@ -145,12 +145,12 @@ pub(super) fn object(schema: &Value) -> String {
     }
 }
 
-/// «a, b or c».
+/// "a, b or c".
 pub(super) fn either(words: Vec<String>) -> String {
     join(words, "or")
 }
 
-/// «"a" and "b"».
+/// `"a" and "b"`.
 pub(super) fn both(words: &[&str]) -> String {
     join(quoted(words), "and")
 }

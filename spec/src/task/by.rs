@@ -24,7 +24,7 @@ use crate::did_you_mean;
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum By {
-    /// Variants of one task, by declared parameters: 1 is one parameter moved over its whole range.
+    /// Variants of one task, by declared parameters: 1 means that one parameter moves across its whole range.
     Parameters,
     /// The contents of worlds, in the units of the reference page on comparison.
     Worlds,

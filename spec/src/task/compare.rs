@@ -25,7 +25,8 @@ pub struct Compare {
     /// The measure; the default of the parameter's type if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measure: Option<MeasureName>,
-    /// For choices: the distance between each two, with one row per choice, in their order; divided by the largest distance.
+    /// For choices: the distance between each pair, with one row per choice, in the order of the choices; divided by the
+    /// largest distance.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 1000))]
     pub costs: Option<Vec<Vec<f64>>>,
@@ -49,14 +50,14 @@ pub enum MeasureName {
     /// Numbers: the difference, divided by the declared range. The default for numbers.
     Difference,
     /// Numbers above 0: the logarithm of their ratio, divided by that of the range's ends. For scales, where doubling counts
-    /// like halving.
+    /// as much as halving.
     LogRatio,
-    /// Numbers: the difference divided by the larger of the two, then by the maximum in the range. Every number is at the
-    /// largest distance from 0.
+    /// Numbers: the difference divided by the larger of the two, then by the maximum in the range. So every number
+    /// has the maximum distance from 0.
     RelativeDifference,
     /// Any type: 0 if the values are equal, 1 otherwise.
     SameOrNot,
-    /// Colours, also for moving random colours: Euclidean distance in sRGB, as in the L2Explorer paper.
+    /// Colours, also as the transport cost between random colours: Euclidean distance in sRGB, as in the L2Explorer paper.
     Srgb,
     /// Colours: Euclidean distance in CIELAB.
     Cie76,
@@ -89,7 +90,7 @@ pub enum MeasureName {
     WallJaccard,
     /// Layouts: how much walking distances differ, as a share of the longer one. Doors and letters do not count.
     WalkingDistance,
-    /// Layouts: how far the mass of the walls must be moved, in sides of the arena. Doors and letters do not count.
+    /// Layouts: how far the mass of the walls must be moved, in units of the arena's side. Doors and letters do not count.
     WallTransport,
 }
 
@@ -108,8 +109,8 @@ impl MeasureName {
             _ if self == Self::SameOrNot => return None,
             Draws::Colors => (
                 is_color || moves,
-                "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or same_or_not, since colours out of a \
-                 continuum are compared by how far they are apart",
+                "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or same_or_not, since colours from a \
+                 continuum are compared by their distance",
             ),
             Draws::ListedColors => (
                 is_color || moves || overlaps,
@@ -117,8 +118,7 @@ impl MeasureName {
             ),
             Draws::Points => (
                 moves || self == Self::BuresWasserstein,
-                "wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not, since points are compared by how far they are \
-                 apart",
+                "wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not, since points are compared by their distance",
             ),
             Draws::Shares => (
                 self == Self::Wasserstein1,
@@ -127,11 +127,11 @@ impl MeasureName {
             Draws::Headings => (
                 self == Self::Wasserstein1 || overlaps,
                 "wasserstein_1, total_variation, hellinger, jensen_shannon or same_or_not, since headings are \
-                 compared round the circle",
+                 compared around the circle",
             ),
             Draws::Texts => (
                 overlaps,
-                "total_variation, hellinger, jensen_shannon or same_or_not, since words are no distance apart",
+                "total_variation, hellinger, jensen_shannon or same_or_not, since there is no distance between words",
             ),
             Draws::Numbers => (
                 moves || overlaps || self == Self::Energy,
@@ -161,20 +161,21 @@ impl MeasureName {
         }
         let (fits, wanted) = match self {
             Self::SameOrNot => return None,
-            Self::Difference | Self::RelativeDifference => {
-                (of_numbers, "a variant parameter of type number or integer for it")
-            }
+            Self::Difference | Self::RelativeDifference => (
+                of_numbers,
+                "a variant parameter of type number or integer for this measure",
+            ),
             Self::LogRatio => (
                 of_numbers && always_positive(parameter),
-                "a variant parameter of type number or integer whose values are all above 0 for it",
+                "a variant parameter of type number or integer with values above 0, for this measure",
             ),
             Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab => (
                 parameter.kind == ParameterType::Color || by_distribution,
-                "a parameter of type color, or one whose distributions draw colours, for it",
+                "a parameter of type color, or one whose distributions draw colours, for this measure",
             ),
             Self::WallJaccard | Self::WalkingDistance | Self::WallTransport => (
                 parameter.kind == ParameterType::Layout,
-                "a variant parameter of type layout for it",
+                "a variant parameter of type layout for this measure",
             ),
             Self::Wasserstein1
             | Self::Wasserstein2
@@ -184,7 +185,7 @@ impl MeasureName {
             | Self::Energy
             | Self::BuresWasserstein => (
                 by_distribution,
-                "a randomized parameter, or one of type distribution for it",
+                "a randomized parameter, or one of type distribution, for this measure",
             ),
         };
         (!fits).then_some(wanted)
@@ -257,7 +258,7 @@ impl Compare {
         if let Some(costs) = &self.costs {
             let at = format!("{pointer}/costs");
             if self.measure.is_some() {
-                let found = "costs beside a measure";
+                let found = "costs and a measure";
                 problems.push(Problem::new("spec/compare", &at, found, "one of the two"));
             }
             problems.extend(cost_problem(costs, parameter, &at));
@@ -270,12 +271,12 @@ impl Compare {
 fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Option<Problem> {
     let wrong = |at: String, found: String, expected: &str| Some(Problem::new("spec/compare", at, found, expected));
     let Some(choices) = &parameter.choices else {
-        let found = "costs of a parameter without choices".to_owned();
+        let found = "costs for a parameter without choices".to_owned();
         return wrong(pointer.to_owned(), found, "a variant parameter with choices");
     };
     let names: BTreeSet<String> = choices.iter().map(ToString::to_string).collect();
     if names.len() < choices.len() {
-        let found = "costs of choices of which one stands twice".to_owned();
+        let found = "costs for choices with a duplicate".to_owned();
         return wrong(pointer.to_owned(), found, "each choice once");
     }
     if costs.len() != choices.len() {
@@ -298,17 +299,17 @@ fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Opt
                 return wrong(at, cost.to_string(), "a number of at least 0");
             }
             if a == b && *cost != 0.0 {
-                return wrong(at, cost.to_string(), "0: a choice is no distance from itself");
+                return wrong(at, cost.to_string(), "0, the distance of a choice from itself");
             }
             if b < a && *cost != costs[b][a] {
-                let expected = format!("{}, as at /{b}/{a}: as far there as back", costs[b][a]);
+                let expected = format!("{}, as at /{b}/{a}: costs must be symmetric", costs[b][a]);
                 return wrong(at, cost.to_string(), &expected);
             }
         }
     }
     if costs.iter().flatten().all(|cost| *cost == 0.0) && choices.len() > 1 {
         let found = "costs that are all 0".to_owned();
-        return wrong(pointer.to_owned(), found, "some that are not, or a weight of 0");
+        return wrong(pointer.to_owned(), found, "at least one above 0, or a weight of 0");
     }
     None
 }

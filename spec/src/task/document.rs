@@ -56,7 +56,7 @@ pub(crate) struct TaskDocument {
     /// The weight of each element of the decision process when variants are compared; 1 by default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(crate) element_weights: ElementWeights,
-    /// How variants are compared by default: by parameters if absent.
+    /// How variants are compared by default; by parameters if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) compare_by: Option<By>,
     /// Named variants: each sets some of the variant parameters, overriding another variant's values or the defaults. An entry

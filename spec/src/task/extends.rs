@@ -28,7 +28,7 @@ pub(crate) fn values_of(
         let pointer = |start: &str| format!("/variants/{}/extends", escape(&variants[start].origin));
         if let Some(first) = chain.iter().position(|known| *known == name) {
             let found = format!("a cycle: {} extends {name}", chain[first..].join(" extends "));
-            let expected = "a chain of extends that ends";
+            let expected = "a chain of extends without a cycle";
             return Err(Problem::new("spec/extends-cycle", pointer(chain[0]), found, expected));
         }
         chain.push(name);
@@ -36,7 +36,7 @@ pub(crate) fn values_of(
             let found = format!("a chain of more than {MAX_EXTENDED} variants that extend each other");
             let expected = format!("at most {MAX_EXTENDED}");
             let problem = Problem::new("spec/length", pointer(chain[0]), found, expected);
-            return Err(problem.advise("extend a variant further up"));
+            return Err(problem.advise("extend a variant further up the chain"));
         }
         next = match &variant.extends {
             None => None,

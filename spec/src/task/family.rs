@@ -87,8 +87,8 @@ pub(crate) fn unfold(
             let declared = member_of(name, pattern.as_deref(), spec, &axes, member);
             let characters = declared.0.chars().count();
             if characters > MAX_NAME {
-                let found = format!("the variant {:?} of {characters} characters", declared.0);
-                let problem = Problem::new("spec/length", &pointer, found, format!("names of at most {MAX_NAME}"));
+                let found = format!("the variant name {:?} with {characters} characters", declared.0);
+                let problem = Problem::new("spec/length", &pointer, found, format!("at most {MAX_NAME}"));
                 problems.push(problem.advise("shorten the family's name, or list fewer parameters in it"));
                 break;
             }
@@ -104,7 +104,7 @@ pub(crate) fn unfold(
                     "spec/duplicate-name",
                     &pointer,
                     found,
-                    "a name of its own for each variant",
+                    "a unique name for each variant",
                 ));
             }
         }
@@ -175,16 +175,16 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
     let refused = |found: String, expected: String| Problem::new("spec/name", at.clone(), found, expected);
     if axes.is_empty() {
         let problem = refused(
-            "a name of members".to_owned(),
-            "it in a family, with a grid or a sweep".to_owned(),
+            "a name pattern".to_owned(),
+            "one in a family, with a grid or a sweep".to_owned(),
         );
-        return Err(problem.advise("a single variant is called by its key"));
+        return Err(problem.advise("a single variant is named by its key"));
     }
     let mut pieces = Vec::new();
     let mut rest = name;
     while let Some((before, after)) = rest.split_once('{') {
         let Some((parameter, after)) = after.split_once('}') else {
-            return Err(refused(format!("{name:?}"), "a } behind every {".to_owned()));
+            return Err(refused(format!("{name:?}"), "a } after every {".to_owned()));
         };
         let Some(axis) = axes.iter().position(|(known, _)| *known == parameter) else {
             let found = format!("{{{parameter}}}");
@@ -204,7 +204,7 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
         None => Ok(Some(pieces)),
         Some(axis) => Err(refused(
             format!("{name:?}"),
-            format!("{} in it, so that every member has a name of its own", known[axis]),
+            format!("{} in it, so that every member has its own name", known[axis]),
         )),
     }
 }
@@ -321,7 +321,7 @@ mod tests {
             "/variants/look/name: {colour}, one of {color}, {light}"
         );
         assert!(refused(&named("{light}")).contains("{color} in it"));
-        assert!(refused(&named("{color")).contains("a } behind every {"));
+        assert!(refused(&named("{color")).contains("a } after every {"));
         assert!(refused(r#"{ "red": { "name": "rot" } }"#).contains("a grid or a sweep"));
     }
 

@@ -97,7 +97,7 @@ pub enum Facing {
     Middle,
     /// Towards a point in metres.
     Point([Number; 2]),
-    /// Towards the nearest object of an earlier group; if that group is empty, as set by the template.
+    /// Towards the nearest object of an earlier group; if that group is empty, as the template says.
     Group(#[schemars(length(min = 1, max = 100))] String),
 }
 

@@ -1,4 +1,4 @@
-//! Reads a task spec: its text against the schema, then its document against the rules that no schema can state.
+//! Reads a task spec, and checks it against the schema, then against the rules that no schema can state.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ impl TaskSpec {
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
         let too_deep = too_deep(&document.value, 0).map(|pointer| {
-            let found = format!("more than {MAX_TASK_DEPTH} lists and objects in each other");
+            let found = format!("more than {MAX_TASK_DEPTH} nested lists and objects");
             let expected = format!("at most {MAX_TASK_DEPTH}; is a bracket missing?");
             Problem::new("spec/value", pointer, found, expected)
         });

@@ -261,7 +261,7 @@ impl TaskSpec {
     /// Reasons why a variant with these values cannot be sampled: invalid distributions and violated requirements.
     pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         if let Some((requirement, shown)) = variant::violated_requirement(&self.requirements, values) {
-            let expected = format!("what \"require\" states: {requirement}");
+            let expected = format!("the condition in \"require\": {requirement}");
             let mut problems = self.faults_of(values);
             problems.push(Problem::new("spec/requirement", "/require", shown, expected));
             return problems;

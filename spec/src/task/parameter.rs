@@ -288,7 +288,7 @@ impl Parameter {
         let choices = self.choices.iter().flat_map(Choices::entries);
         let only_differs = choices.into_iter().find_map(|(key, choice)| {
             let difference = only_difference(&json, &choice.to_json(), "")?;
-            Some(within(difference).advise(format!("choice {key} is the same but for this")))
+            Some(within(difference).advise(format!("choice {key} differs only here")))
         });
         if let Some(only_differs) = only_differs {
             return vec![only_differs];
@@ -330,7 +330,7 @@ impl Parameter {
             .typed(value)
             .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;
         if let Value::Layout(layout) = &typed {
-            layout.check().map_err(|error| format!("a sound layout; {error}"))?;
+            layout.check().map_err(|error| format!("a valid layout; {error}"))?;
         }
         if let Some(expected) = self.vector_length().filter(|_| !self.has_same_length(&typed)) {
             return Err(format!("a list of {expected} numbers"));
@@ -438,7 +438,7 @@ impl Parameter {
         let [low, high] = self.range?;
         let kind = self.kind.name();
         if self.choices.is_some() {
-            let found = "a range beside choices";
+            let found = "a range and choices";
             return Some(Problem::new("spec/value", pointer, found, "one of the two"));
         }
         if !self.kind.is_numeric() {

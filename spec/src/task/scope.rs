@@ -170,8 +170,8 @@ impl Outcomes {
         self.num_combinations += 1;
         add_weight(&mut self.found, distribution, weight);
         if self.num_combinations > MAX_COMBINATIONS {
-            let expected = format!("at most {MAX_COMBINATIONS} num_combinations");
-            let found = format!("draws that fall out in more than {MAX_COMBINATIONS} num_combinations");
+            let expected = format!("at most {MAX_COMBINATIONS} combinations");
+            let found = format!("draws with more than {MAX_COMBINATIONS} combinations");
             return Err(Unsettled::NoCase(found, expected));
         }
         Ok(())

@@ -36,7 +36,7 @@ impl JsonSchema for Case<Source> {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let description = "Selects what is used here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
+        let description = "The value of a parameter selects what is used here: cases are values, parameters, distributions or look-ups.";
         case::schema(generator, description, &Schema::from(true))
     }
 }
@@ -105,7 +105,7 @@ pub struct Hole<T> {
     pub source: Source,
     /// The type of value expected here.
     pub kind: ParameterType,
-    /// The numbers allowed there, both ends included.
+    /// The numbers allowed here, both ends included.
     pub range: [f64; 2],
     /// The schema of the hole, without its definitions.
     schema: Option<&'static Json>,
@@ -143,7 +143,7 @@ impl<T> Hole<T> {
         }
     }
 
-    /// Sets the value. `None` if it is not allowed there, such as a string that names nothing.
+    /// Sets the value. `None` if it is not allowed here, such as a string that names nothing.
     pub fn fill(&self, target: &mut T, value: &Value) -> Option<()> {
         (self.set)(target, &self.steps, value)
     }

@@ -1,4 +1,4 @@
-//! [`Variant`]: one variant of a task, in which every fixed and variant parameter has its value.
+//! [`Variant`]: one variant of a task, in which every fixed and variant parameter has a value.
 
 use std::sync::Arc;
 

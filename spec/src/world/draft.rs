@@ -31,10 +31,10 @@ fields! {
         #[serde(rename = "$schema", skip_serializing)]
         pub schema: Option<String> = None => Field::ours(Not("it names a schema for editors"))
                 .named("$schema")
-                .fixed("it names a schema for editors, and is no part of the world"),
+                .fixed("it names a schema for editors, and is not part of the world"),
         /// The version of this document format. Older versions are read, newer ones rejected; 1 if absent.
         #[schemars(range(min = 1, max = 1))]
-        pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the form of the document"))
+        pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the version of the document format"))
                 .fixed("it is the version of the document format, and there is only one"),
         /// The seed of all random numbers in the running world: where wandering objects go, which pulls of a bandit arm pay,
         /// where objects reappear. In a sampled world it is derived from the task, the sampling seed and the world's number, so
@@ -42,11 +42,11 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None
-            => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world"))
+            => Field::ours(Not("two worlds that differ only in their seeds are two runs of one world"))
                 .fixed("a sampled world derives it from its task, seed and number, so that all variants share it"),
         /// The purpose of the world.
         pub game_mode: GameMode = GameMode::default()
-            => Field::original(Not("photographing objects is no decision process")),
+            => Field::original(Not("photographing objects is not a decision process")),
         /// Steps until the episode is truncated; 0 means never.
         #[schemars(range(min = 0, max = 1_000_000_000))]
         pub max_steps: u32 = 0 => Field::original(Measured(&[Limit])),
@@ -64,7 +64,7 @@ fields! {
         /// How objects are photographed in `collect_images`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub image_params: Option<ImageParams> = None
-            => Field::original(Not("photographing objects is no decision process")),
+            => Field::original(Not("photographing objects is not a decision process")),
         /// Rewards and endings in addition to those of the objects.
         pub rules: Rules = Rules::default() => Field::ours(AsPart),
         /// The objects of the world. Moving objects move in this order: where two meet, the one listed first has the right of

@@ -73,7 +73,7 @@ fn locked_forever(world: &World) -> Vec<(String, String)> {
     }
     let remark = |(index, key, _): (usize, &String, Barrier)| {
         let text = format!(
-            "every {key:?} lies behind this door or behind others that stay locked; put one where the agent gets without it"
+            "every {key:?} lies behind this door or behind others that stay locked; put one where the agent can get it first"
         );
         (format!("/objects/{index}/door/key"), text)
     };
@@ -134,7 +134,7 @@ fn overlapping(world: &World) -> Vec<(String, String)> {
         });
         if let Some((other, ..)) = near.next() {
             let (first, second) = (index.min(other), index.max(other));
-            let text = format!("the door stands in that of /objects/{first}; move one of them");
+            let text = format!("the door overlaps that of /objects/{first}; move one of them");
             found.push((format!("/objects/{second}/coordinates"), text));
         }
     }
@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(
             in_a_row([0.0, -2.0]).len(),
             1,
-            "the red key is behind the red door; the blue one is at hand"
+            "the red key is behind the red door; the blue one is within reach"
         );
         assert_eq!(in_a_row([4.0, 0.0]).len(), 2, "neither can be opened first");
     }
@@ -216,7 +216,7 @@ mod tests {
             remarks(r#"{ "walls": [] }"#, &objects)
         };
         assert_eq!(doors(0.6), [""; 0]);
-        let expected = ["/objects/1/coordinates: the door stands in that of /objects/0; move one of them"];
+        let expected = ["/objects/1/coordinates: the door overlaps that of /objects/0; move one of them"];
         assert_eq!(doors(0.4), expected);
         assert_eq!(doors(-0.4), expected);
     }

@@ -119,7 +119,7 @@ fields! {
         /// object's starting position. Objects with the same seed are told apart by their order.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
-        pub seed: Option<u64> = None => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world")),
+        pub seed: Option<u64> = None => Field::ours(Not("two worlds that differ only in their seeds are two runs of one world")),
         /// A free-form label by which rules and logs refer to it; the name of the group for sampled objects.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
@@ -128,7 +128,7 @@ fields! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         pub unique_name: Option<String> = None => Field::original(Not("it is a name"))
-                .fixed("no two objects of a world may have the same; objects are named together by their tag"),
+                .fixed("it must be unique in the world; a tag can name several objects"),
         /// Makes it a door.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub door: Option<Door> = None => Field::ours(Leaves(Bodies)),

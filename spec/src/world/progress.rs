@@ -183,7 +183,7 @@ pub struct ObjectProgress {
     /// Whether a door was unlocked by its key.
     #[serde(skip_serializing_if = "is_default")]
     pub unlocked: bool,
-    /// The time step from which an open door closes, as soon as nothing stands in it.
+    /// The first time step in which an open door may close; it then closes as soon as nothing stands in it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = MAX_INTEGER))]
     pub closes_at: Option<u64>,

@@ -25,7 +25,7 @@ impl World {
     /// let remarks = World::from_json("w.json", text)?.remarks("w.json", text);
     /// assert_eq!(
     ///     remarks[0].to_string(),
-    ///     "w.json:1:72 (/objects/0/motion_model): the car is to move as prey and stands still: it has no speed; set \"speed\""
+    ///     "w.json:1:72 (/objects/0/motion_model): the car should move as prey but stands still: it has no speed; set \"speed\""
     /// );
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
@@ -44,11 +44,11 @@ impl World {
         let sides @ [width, depth] = arena.arena_size();
         let zones = arena.zones.iter().enumerate();
         for (index, _) in zones.filter(|(_, zone)| zone.is_outside(sides)) {
-            let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
+            let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept but unreachable");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
         for (pointer, fault) in self.polygon_faults() {
-            remarks.push(pointer, format!("the polygon {fault}; it is kept as it stands"));
+            remarks.push(pointer, format!("the polygon {fault}; it is kept unchanged"));
         }
         let start = self.agent_params.coordinates;
         if let Some(place) = arena
@@ -87,7 +87,7 @@ impl World {
                 remarks.push(format!("/objects/{index}/coordinates"), text);
             }
             if object.text.is_some() && object.class.to_lowercase() != "sign" {
-                let text = format!("a {} shows no text; signs do, the class \"sign\"", object.class);
+                let text = format!("a {} shows no text; only the class \"sign\" does", object.class);
                 remarks.push(format!("/objects/{index}/text"), text);
             }
             if object.stands_still() {
@@ -98,7 +98,7 @@ impl World {
                     "it has no waypoints; set \"waypoints\""
                 };
                 let (class, model) = (&object.class, model.as_str().unwrap_or_default());
-                let text = format!("the {class} is to move as {model} and stands still: {missing}");
+                let text = format!("the {class} should move as {model} but stands still: {missing}");
                 remarks.push(format!("/objects/{index}/motion_model"), text);
             }
         }
@@ -151,7 +151,7 @@ impl World {
         let place = self.environment_params.out_of_reach(object.coordinates, self.plan())?;
         let ([x, y], class) = (object.coordinates, &object.class);
         Some(format!(
-            "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach"
+            "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept but unreachable"
         ))
     }
 }

@@ -108,7 +108,7 @@ fields! {
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "tag": "ball", "to": "box", "within": 2 }]))]
     pub struct Delivery {
-        /// Tag of the things. All of them that remain must lie there, and at least one; carried things do not count as lying.
+        /// Tag of the things. At least one must remain, and all that remain must lie there; carried things do not count.
         #[schemars(length(min = 1, max = 100))]
         pub tag: String => Field::ours(AsPart),
         /// Tag of the destination objects.

@@ -10,7 +10,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
         found.extend(door(world, object).map(|(key, text)| (at(key), text)));
         if let Some(switch) = &object.switch {
             if !has(world, &switch.target, |object| object.door.is_some()) {
-                let text = format!("no door has the tag {:?}; the switch moves nothing", switch.target);
+                let text = format!("no door has the tag {:?}; the switch has no effect", switch.target);
                 found.push((at("switch/target"), text));
             }
             found.extend(impossible_stimuli(world, object, &switch.on).map(|text| (at("switch/on"), text)));
@@ -18,7 +18,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
         if let Some(portable) = &object.portable {
             if world.agent_params.carry_limit == 0 {
                 let text = format!(
-                    "the {} can be carried, and the agent carries nothing; set /agent_params/carry_limit to 1 or more",
+                    "the {} can be carried, but the agent cannot carry anything; set /agent_params/carry_limit to 1 or more",
                     object.class
                 );
                 found.push((at("portable"), text));
@@ -166,7 +166,7 @@ mod tests {
         );
         check(
             |world| world.agent_params.carry_limit = 0,
-            &["/objects/1/portable: the key can be carried, and the agent carries nothing"],
+            &["/objects/1/portable: the key can be carried, but the agent cannot carry anything"],
         );
         check(
             |world| {

@@ -9,8 +9,8 @@ use crate::Color;
 use crate::serde_defaults::{is_default, is_one, is_true};
 
 fields! {
-    /// A part of the ground, either a `disc` or a `polygon`. It affects the agent while the agent's centre is in it, from the
-    /// first time step on: starting in a zone counts as entering it. It affects nothing else.
+    /// A part of the ground, either a `disc` or a `polygon`. It affects the agent, and nothing else, while the agent's centre
+    /// is in it. Starting in a zone counts as entering it in the first time step.
     ///
     /// Zones may overlap: their rewards are added, and their speed factors multiplied. If several end the episode in one time
     /// step, success takes precedence over failure; an ending takes precedence over a teleport; of several teleports, the first

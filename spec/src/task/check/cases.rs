@@ -160,7 +160,7 @@ impl Check<'_> {
             .collect();
         if case.otherwise.is_none() && (values.is_none() || !missing.is_empty()) {
             let found = if values.is_none() {
-                format!("no \"else\" for {name:?}, which may have any value between")
+                format!("no \"else\" for {name:?}, which may have any value in its range")
             } else {
                 format!("no case for {}", first_of(&missing))
             };

@@ -13,7 +13,7 @@ use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
-/// Maximum number of placements of a group to check for room, because a family may have thousands of variants.
+/// Maximum number of placements of a group to check for room: a family may have thousands of variants.
 const MAX_CASES: usize = 64;
 
 impl Check<'_> {
@@ -30,7 +30,7 @@ impl Check<'_> {
         if group.object.get("unique_name").is_some_and(|name| !name.is_null()) {
             let expected = "no unique_name: every object of the group would have it";
             let problem = Problem::new("spec/value", format!("{root}/object/unique_name"), "a name", expected);
-            self.report(problem.advise("name them together by \"tag\""));
+            self.report(problem.advise("give them a common \"tag\""));
         }
         self.placement(&format!("{root}/placement"), &group.placement);
         self.cells(&root, group);
@@ -103,7 +103,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks placements on layout cells: they must stand alone, in a world with a layout, without `around`.
+    /// Checks placements on layout cells: they need a world with a layout, and allow neither a mixture nor `around`.
     fn cells(&mut self, root: &str, group: &Group) {
         let all = self.distributions_of(&group.placement);
         if !all.iter().any(Distribution::draws_cells) {
@@ -113,7 +113,7 @@ impl Check<'_> {
         let is_mixed = |law: &Distribution<Number>| law.draws_cells() && !matches!(law, Distribution::Cells { .. });
         if all.iter().any(is_mixed) {
             let found = "cells in a mixture";
-            self.report(Problem::new("spec/value", &pointer, found, "cells by themselves"));
+            self.report(Problem::new("spec/value", &pointer, found, "only cells"));
         }
         if !self.has_layout {
             let problem = if all.contains(&Distribution::cells_of_group()) {
@@ -125,9 +125,9 @@ impl Check<'_> {
             self.report(problem);
         }
         if group.around.is_some() {
-            let found = "cells beside \"around\"";
+            let found = "cells with \"around\"";
             let problem = Problem::new("spec/value", pointer, found, "one of the two");
-            self.report(problem.advise("cells do not move with what they would be around"));
+            self.report(problem.advise("cells have fixed positions, which \"around\" cannot move"));
         }
     }
 
@@ -149,9 +149,8 @@ impl Check<'_> {
             }
             if let Some(room) = case.0.room_in_turn(min, separation).filter(|room| *room < min) {
                 let places = case.0.num_turns().unwrap_or_default();
-                let found = format!(
-                    "{places} places, of which {room} are free in turn {separation} m apart, in variant {name:?}"
-                );
+                let found =
+                    format!("{places} places, with room for {room} objects {separation} m apart, in variant {name:?}");
                 let expected = format!("places for {min} objects {separation} m apart");
                 let problem = Problem::new("spec/no-room", format!("{root}/placement"), found, expected);
                 return self.report(problem.advise("add places, or lower the count or the separation"));
@@ -203,7 +202,7 @@ impl Check<'_> {
 
     /// Checks `turned` and `facing`; returns the index of the earlier group that the group faces, if any.
     fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Option<usize> {
-        let wanted = "a group to be placed around";
+        let wanted = "the key \"around\" with the name of a group";
         if group.turned && group.around.is_none() {
             let pointer = format!("{root}/turned");
             self.report(Problem::new("spec/value", pointer, "true without around", wanted));
@@ -218,7 +217,7 @@ impl Check<'_> {
             }
             Some(Facing::Middle) if group.around.is_none() => {
                 let problem = Problem::new("spec/value", pointer, "\"middle\" without around", wanted);
-                self.report(problem.advise("name it under \"around\""));
+                self.report(problem.advise("or face a point, a group or the agent"));
             }
             _ => {}
         }

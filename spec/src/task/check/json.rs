@@ -41,7 +41,7 @@ impl Check<'_> {
             let found = problems(&value);
             for mut problem in found.into_iter().map(|problem| problem.within(&pointer)) {
                 if pointer != place && !pointer.starts_with(&format!("{place}/")) {
-                    let where_used = format!("the parameter stands at {place}");
+                    let where_used = format!("the parameter is used at {place}");
                     let advice = problem.advice.take();
                     problem.advice = Some(advice.map_or(where_used.clone(), |advice| {
                         let end = if advice.ends_with('?') { "" } else { ";" };

@@ -110,16 +110,16 @@ fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// Reports measures of parameters that only draws read: variants are then compared by their distributions, so the measure would
-/// not be used.
+/// Reports measures of parameters that only distributions read: variants are then compared by those distributions, so the
+/// measure would not be used.
 fn unused_measures(task: &TaskSpec) -> Vec<Problem> {
     let compared = task.parameters().iter().filter(|(_, own)| own.compare.is_some());
     let problem = |(name, parameter): (&String, &Parameter)| {
         let readers = task.readers(name);
         (parameter.role == Role::Variant && readers.are_draws_alone()).then(|| {
             let draws = readers.draws.join(", ");
-            let found = format!("a measure of a parameter that only the draw of {draws} reads");
-            let expected = "\"compare\" at the drawn parameter, by whose distribution variants are compared";
+            let found = format!("a measure for a parameter that is used only to draw {draws}");
+            let expected = "\"compare\" in the drawn parameter, because its distribution is compared";
             let pointer = format!("/parameters/{}/compare", escape(name));
             Problem::new("spec/compare", pointer, found, expected)
         })
@@ -152,7 +152,7 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
                 "spec/reserved-name",
                 format!("/parameters/{name}"),
                 found,
-                "a name that variants do not use themselves",
+                "a name that is not a key of a variant",
             )
         })
 }
@@ -355,7 +355,7 @@ impl<'a> Check<'a> {
             if let Some((requirement, shown)) = variant::violated_requirement(requirements, values) {
                 let pointer = format!("/variants/{}", escape(&variants[name].origin));
                 let found = format!("{shown} in variant {name:?}");
-                let expected = format!("what \"require\" states: {requirement}");
+                let expected = format!("the condition in \"require\": {requirement}");
                 self.problems
                     .push(Problem::new("spec/requirement", pointer, found, expected));
             }

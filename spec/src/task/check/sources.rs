@@ -192,13 +192,13 @@ impl Check<'_> {
             .into_iter()
             .find(|law| law.needs_group() && !(pointer == START && is_of_cells(law)));
         if let Some(cells) = grouped.as_ref().filter(|law| law.draws_cells()) {
-            let expected = "a placement of a group, or the agent's start, that without room, walk and of_group";
+            let expected = "a group's placement, or the agent's start (without room, walk and of_group)";
             self.report(Problem::new("spec/type", pointer, cells.name(), expected));
         } else if let Some(grouped) = &grouped {
             let advice = "write \"order\": \"random\", or a choice of points, to draw one of them";
-            let found = format!("{}, which looks at the objects before", grouped.name());
+            let found = format!("{}, which depends on the objects placed before", grouped.name());
             self.report(
-                Problem::new("spec/type", pointer, found, "a distribution that draws on its own").advise(advice),
+                Problem::new("spec/type", pointer, found, "a distribution with independent draws").advise(advice),
             );
         }
         grouped.is_none()
@@ -210,7 +210,7 @@ impl Check<'_> {
                 "spec/type",
                 pointer,
                 found,
-                format!("something of type {}", kind.name()),
+                format!("a value of type {}", kind.name()),
             ));
         }
         fits

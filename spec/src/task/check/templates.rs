@@ -114,7 +114,7 @@ impl Check<'_> {
             let pointer = format!("{root}{}", opening.0);
             let Some(hole) = hole(&opening, schema) else {
                 let found = "a parameter or distribution";
-                let expected = "a plain value; this place cannot vary";
+                let expected = "a plain value; this value cannot vary";
                 self.report(Problem::new("spec/value", pointer, found, expected));
                 continue;
             };
@@ -177,7 +177,7 @@ impl Check<'_> {
                     "spec/value",
                     pointer,
                     found,
-                    "only values that can stand here",
+                    "only values that are allowed here",
                 ));
             }
         }

@@ -25,14 +25,14 @@ fn measure_must_fit_its_parameter() {
     check(r#"{ "measure": "relative_difference" }"#, NUMBER, "");
     let number = "a variant parameter of type number or integer";
     let colors = "a parameter of type color, or one whose distributions draw colours,";
-    let laws = "a randomized parameter, or one of type distribution";
+    let laws = "a randomized parameter, or one of type distribution,";
     for (parameter, measure, expected) in [
-        (NUMBER, "log_ratio", "NUMBER whose values are all above 0 for it"),
-        (WORDS, "ciede2000", "COLORS for it"),
-        (NUMBER, "hellinger", "LAWS for it"),
-        (color, "relative_difference", "NUMBER for it"),
-        (NUMBER, "hyab", "COLORS for it"),
-        (NUMBER, "energy", "LAWS for it"),
+        (NUMBER, "log_ratio", "NUMBER with values above 0, for this measure"),
+        (WORDS, "ciede2000", "COLORS for this measure"),
+        (NUMBER, "hellinger", "LAWS for this measure"),
+        (color, "relative_difference", "NUMBER for this measure"),
+        (NUMBER, "hyab", "COLORS for this measure"),
+        (NUMBER, "energy", "LAWS for this measure"),
         (drawn, "hyab", "MEASURES energy or same_or_not"),
         (drawn, "relative_difference", "MEASURES energy or same_or_not"),
     ] {
@@ -62,7 +62,7 @@ fn drawn_colours_need_a_measure_with_distances() {
         for unfit in ["total_variation", "energy", "bures_wasserstein"] {
             let error = format!(
                 "/parameters/p/compare/measure): found {unfit}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or \
-                 same_or_not, since colours out of a continuum are compared by how far they are apart"
+                 same_or_not, since colours from a continuum are compared by their distance"
             );
             check(&format!(r#"{{ "measure": "{unfit}" }}"#), parameter, &error);
         }
@@ -129,10 +129,10 @@ fn costs_must_be_distances_among_the_choices() {
     for row in "
 [[0, 1], [1, 0]] => ): found 2 rows, expected 3, one for each choice
 [[0, 1, 1], [1, 0], [1, 1, 0]] => /1): found 2 numbers, expected 3, one for each choice
-[[0, 1, 1], [2, 0, 1], [1, 1, 0]] => /1/0): found 2, expected 1, as at /0/1: as far there as back
-[[0, 1, 1], [1, 3, 1], [1, 1, 0]] => /1/1): found 3, expected 0: a choice is no distance from itself
+[[0, 1, 1], [2, 0, 1], [1, 1, 0]] => /1/0): found 2, expected 1, as at /0/1: costs must be symmetric
+[[0, 1, 1], [1, 3, 1], [1, 1, 0]] => /1/1): found 3, expected 0, the distance of a choice from itself
 [[0, -1, 1], [-1, 0, 1], [1, 1, 0]] => /0/1): found -1, expected a number of at least 0
-[[0, 0, 0], [0, 0, 0], [0, 0, 0]] => ): found costs that are all 0, expected some that are not, or a weight of 0"
+[[0, 0, 0], [0, 0, 0], [0, 0, 0]] => ): found costs that are all 0, expected at least one above 0, or a weight of 0"
         .trim()
         .lines()
     {
@@ -143,16 +143,16 @@ fn costs_must_be_distances_among_the_choices() {
     check(
         r#"{ "costs": [[0]] }"#,
         NUMBER,
-        "/parameters/p/compare/costs): found costs of a parameter without choices, expected a variant parameter with choices",
+        "/parameters/p/compare/costs): found costs for a parameter without choices, expected a variant parameter with choices",
     );
     check(
         r#"{ "costs": [[0, 1], [1, 0]] }"#,
         r#""role": "variant", "type": "string", "choices": ["a", "a"], "default": "a""#,
-        "/parameters/p/compare/costs): found costs of choices of which one stands twice, expected each choice once",
+        "/parameters/p/compare/costs): found costs for choices with a duplicate, expected each choice once",
     );
     check(
         r#"{ "measure": "same_or_not", "costs": [[0, 1, 1], [1, 0, 1], [1, 1, 0]] }"#,
         WORDS,
-        "/parameters/p/compare/costs): found costs beside a measure, expected one of the two",
+        "/parameters/p/compare/costs): found costs and a measure, expected one of the two",
     );
 }

@@ -41,7 +41,7 @@ impl Kind {
         match self {
             Self::Number => "a number",
             Self::Truth => "true or false",
-            Self::Text(_) => "a text",
+            Self::Text(_) => "text",
             Self::Color => "a colour",
             Self::List(word, _) => word,
         }
@@ -139,7 +139,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             (None, _, _) => Ok(Some(kind)),
             (Some(_), _, Some(0)) => {
                 let found = format!("an index of {name} ({})", kind.describe());
-                Err((found, format!("{name} alone")))
+                Err((found, format!("{name} without an index")))
             }
             (Some(index), _, Some(numbers)) if index >= numbers => Err((
                 format!("{name}[{index}]"),
@@ -178,12 +178,12 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             (Kind::Color, other) | (other, Kind::Color) if other.is_color() => Ok(()),
             (Kind::Color, Kind::Text(_)) | (Kind::Text(_), Kind::Color) => {
                 let (text, kind) = if *a.1 == Kind::Color { b } else { a };
-                let expected = format!("a colour or the CSS name of one beside {symbol}, such as 'red'");
+                let expected = format!("a colour or the CSS name of one next to {symbol}, such as 'red'");
                 Err((self.shown(text, kind), expected))
             }
             _ => {
                 let found = format!("{} {symbol} {}", self.shown(a.0, a.1), self.shown(b.0, b.1));
-                let expected = format!("two numbers, texts, colours or truth values beside {symbol}");
+                let expected = format!("two numbers, texts, colours or truth values on both sides of {symbol}");
                 Err((found, expected))
             }
         }
@@ -202,7 +202,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         let suggestion = suggestion.map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"));
         let quoted: Vec<String> = all.iter().map(|choice| format!("'{choice}'")).collect();
         let expected = format!("one of the choices of {name}: {}{suggestion}", first_of(&quoted));
-        Err((format!("'{text}' beside {name}"), expected))
+        Err((format!("'{text}' next to {name}"), expected))
     }
 
     /// Succeeds if all parts fit; otherwise the error names the first that does not.
@@ -211,7 +211,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             let Some(kind) = self.kind(node)? else { continue };
             if !fits(&kind) {
                 return Err((
-                    format!("{} beside {symbol}", self.shown(node, &kind)),
+                    format!("{} next to {symbol}", self.shown(node, &kind)),
                     expected.to_owned(),
                 ));
             }

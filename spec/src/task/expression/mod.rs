@@ -296,7 +296,7 @@ impl Parser {
     /// An expression with operators that all bind tighter than `floor` (precedence climbing).
     fn expression(&mut self, floor: u8, depth: usize) -> Result<Node, String> {
         if depth > MAX_DEPTH {
-            return Err(format!("at most {MAX_DEPTH} brackets or signs inside each other"));
+            return Err(format!("at most {MAX_DEPTH} nested brackets or signs"));
         }
         let mut left = self.operand(depth)?;
         while let Some(operator @ &(_, binding, _)) = binary(self.peek().1) {
@@ -481,9 +481,9 @@ mod tests {
 
     #[test]
     fn hostile_text_is_refused() {
-        check_error(&"(".repeat(400), "at most 32 brackets or signs inside each other");
-        check_error(&"-".repeat(400), "at most 32 brackets or signs inside each other");
-        check_error(&"not ".repeat(100), "at most 32 brackets or signs inside each other");
+        check_error(&"(".repeat(400), "at most 32 nested brackets or signs");
+        check_error(&"-".repeat(400), "at most 32 nested brackets or signs");
+        check_error(&"not ".repeat(100), "at most 32 nested brackets or signs");
         check_error(&"a + ".repeat(10_000), "at most 500 characters");
     }
 }

@@ -129,7 +129,7 @@ impl WorldDraft {
         };
         let mut problems = layout.problems();
         if environment.predefined_map != 0 {
-            let found = format!("a layout beside map {}", environment.predefined_map);
+            let found = format!("a layout and map {}", environment.predefined_map);
             let problem = Problem::new("spec/layout-kind", layout::POINTER, found, "one of the two");
             problems.push(problem.advise("remove \"predefined_map\", or the layout"));
         }
@@ -160,13 +160,13 @@ impl WorldDraft {
         }
         if (agent.action_model, &agent.actions) == (ActionModel::ByWaypoint, &ActionSpace::DefaultDiscrete) {
             let pointer = "/agent_params/actions";
-            let found = "default_discrete under bywaypoint, whose rows are places";
+            let found = "default_discrete under bywaypoint, whose actions are positions";
             let expected = "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}";
             problems.push(Problem::new("spec/no-default-actions", pointer, found, expected));
         }
         if let Some(energy) = agent.energy.filter(|energy| energy.start > energy.most) {
             let (pointer, found) = ("/agent_params/energy/start", energy.start.to_string());
-            let expected = format!("at most {}, the most that the agent can have", energy.most);
+            let expected = format!("at most {}, the agent's maximum energy", energy.most);
             problems.push(Problem::new("spec/energy", pointer, found, expected));
         }
         problems.extend(zones::problems(self));

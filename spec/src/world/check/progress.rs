@@ -17,15 +17,15 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     for (index, (object, own)) in world.objects.iter().zip(&progress.objects).enumerate() {
         let at = |key: &str| format!("objects/{index}{key}");
         if own.present && own.returns_at.is_some() {
-            let found = "the return of an object that is there";
-            problems.push(wrong(&at("/returns_at"), found, "none, or present false"));
+            let found = "a return time for an object that is present";
+            problems.push(wrong(&at("/returns_at"), found, "no return time, or present false"));
         }
         if own.waypoint > 0 {
             let waypoints = object.waypoints.len();
             problems.extend(beyond(&at("/waypoint"), "waypoint", [own.waypoint], waypoints));
         }
         if object.door.is_none() && (own.open.is_some() || own.unlocked || own.closes_at.is_some()) {
-            problems.push(wrong(&at(""), "the progress of a door", "none, for it is not a door"));
+            problems.push(wrong(&at(""), "the progress of a door", "none: it is not a door"));
         }
     }
     let zones = world.environment_params.zones.len();
