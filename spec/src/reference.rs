@@ -14,28 +14,28 @@ const PARTS: [(&str, &str); 7] = [
     ("How objects are photographed", "/image_params"),
     ("Rewards and endings of the world", "/rules"),
     ("An object", "/objects/*"),
-    ("How far a world has come", "/progress"),
+    ("The progress of a world", "/progress"),
 ];
 
 const KEYS: &str = "# Every key of a world
 
 Keys in bold also exist in L2Explorer. In the `world` of a task, and in the `object` of a group, the value of any key, or any
-value inside it, can be a parameter or a distribution: the column *parameter* gives the type that the parameter needs, or why a
-key takes none. A parameter of type `json` fits every place if the schema allows each of its values there, `null` where the key
-may be absent; so does a `choice` or `constant` of such values. The positions of a group's objects are its `placement`, not
-`coordinates`; their number is its `count`. The column *compared* names the [part of a distance](comparison.md) that reads the
-key. `cargo xtask schemas` generates this page.
+value inside it, can be a parameter or a distribution: the column *parameter* gives the type that the parameter needs, or the
+reason why no parameter can set the key. A parameter of type `json` fits any key whose schema allows each of its values (`null`
+if the key may be absent); so does a `choice` or `constant` of such values. The positions of a group's objects are its
+`placement`, not `coordinates`; their number is its `count`. The column *compared* names the [part of a
+distance](comparison.md) that reads the key. `cargo xtask schemas` generates this page.
 ";
 
 const COMPARISON: &str = "# How worlds are compared
 
-The distance of two worlds is the sum of these parts. Each counts for an element of the decision process, in the unit that the
-table gives: `the larger one` is the difference of two numbers divided by the larger of them, so that 1 is something against
-nothing. Corners of walls and waypoints count by the distance between them, 10 m for 1, and 1 where there is no counterpart.
-Parts of objects are sums over objects; colours of surroundings are sums over four colours. Values that nothing reads do not
-count, such as the reward of an object without a stimulus. Each key counts once, for the element that it belongs to first; [the
-table of keys](world.md) says which parts read it. Its other effects, as `order` affects which objects move, are measured by
-`driftworld elements`. `cargo xtask schemas` generates this page.
+The distance between two worlds is the sum of these parts. Each part counts for one element of the decision process, in the
+unit of the last column: `the larger value` means that the difference of two numbers is divided by the larger of them, so any
+number above 0 differs from 0 by 1. Corners of walls and waypoints count by the distance between them, in units of 10 m; one
+without a counterpart counts as 1. Parts of objects are sums over objects; surrounding colours are sums over four colours.
+Values without any effect do not count, such as the reward of an object without a stimulus. Each key counts once, for its main
+element; [the table of keys](world.md) says which parts read it. `driftworld elements` measures its other effects, such as the
+effect of `order` on which objects move. `cargo xtask schemas` generates this page.
 
 | part | element | 1 is |
 |---|---|---|
@@ -182,7 +182,7 @@ fn forms(value: &Json) -> String {
     }
 }
 
-/// The type of parameter that sets the key, or why none can.
+/// The type of parameter that sets the key, or the reason why none can.
 fn parameter(key: &FieldPlace) -> String {
     if let Some(reason) = key.field.fixed {
         return format!("none: {reason}");

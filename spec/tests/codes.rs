@@ -137,7 +137,7 @@ fn cases() -> Vec<SpecError> {
 }
 
 #[test]
-fn every_code_in_the_source_has_a_case_here_and_every_case_its_message() {
+fn every_code_in_the_source_has_a_case_with_a_message() {
     let mut errors = cases();
     errors.extend(look_ups());
     let messages: Vec<String> = errors

@@ -79,7 +79,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(100, 2000)))]
 
     #[test]
-    fn task_is_refused_exactly_if_an_object_can_have_an_unknown_model(
+    fn task_is_refused_if_and_only_if_an_object_can_have_an_unknown_model(
         class in origin(&["tree", "rock"]), model in origin(&["oak", "1", "2", "foxx"]), body in any::<bool>(), fixture in any::<bool>(),
     ) {
         let mut parameters = serde_json::Map::new();

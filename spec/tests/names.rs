@@ -130,7 +130,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
     #[test]
-    fn document_is_read_exactly_if_the_grammar_allows_its_names(
+    fn document_is_read_if_and_only_if_the_grammar_allows_its_names(
         name in prop_oneof!["[a-z._+-]{1,5}", "[ -~]{1,5}", "\\PC{1,4}", "(?s).{1,4}", "(con|nul|com1|lpt¹)(\\.[a-z]{0,2})?"]
     ) {
         check(&name);

@@ -69,9 +69,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Sums of tenths, hundredths and so on read as their exact value, however many terms they have.
+        /// Sums of tenths, hundredths and so on are shown as their exact value, however many terms they have.
         #[test]
-        fn sums_read_as_their_exact_value(
+        fn sums_are_shown_as_their_exact_value(
             parts in prop::collection::vec(-100_000i64..100_000, 1..400),
             places in 0u32..=4,
         ) {

@@ -40,7 +40,7 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (
         Flag,
         "convert --to",
-        "no --to: worlds and scenarios are written in Driftworld's own format",
+        "convert without --to, which writes worlds and scenarios in Driftworld's own format",
     ),
     (Flag, "curriculum --method", "--order"),
     (Flag, "order --method", "--order"),

@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantile_is_the_least_count_that_reaches_the_probability() {
+    fn quantile_is_the_smallest_count_that_reaches_the_probability() {
         for k in 0..400 {
             let u = f64::from(k) / 400.0;
             for (n, p) in [(4.0, 0.5), (30.0, 0.1), (1000.0, 0.3), (100_000.0, 0.9), (7.0, 1.0)] {

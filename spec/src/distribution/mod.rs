@@ -281,8 +281,8 @@ pub enum Distribution<N = f64> {
         /// Cells from south to north, a whole number from 1 to 1,000.
         #[schemars(extend("minimum" = 1, "maximum" = 1_000, "multipleOf" = 1))]
         rows: N,
-        /// How far a point may lie from its cell's centre, as a share of the cell: 0 exactly there, 1 anywhere in the cell; 0
-        /// if absent.
+        /// How far a point may be from its cell's centre, as a share of the cell: 0 is the centre itself, 1 anywhere in the
+        /// cell; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
@@ -322,7 +322,7 @@ pub enum Distribution<N = f64> {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(transform = schema::none_negative)]
         walk: Option<[N; 2]>,
-        /// How far an object may lie from the centre of its cell, as a share of the cell: 0 exactly there, 1 anywhere in the
+        /// How far an object may be from its cell's centre, as a share of the cell: 0 is the centre itself, 1 anywhere in the
         /// cell; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0, "maximum" = 1))]

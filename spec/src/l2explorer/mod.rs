@@ -3,7 +3,7 @@
 //! files, are read in `read_scenario.rs`.
 //!
 //! Every reset file becomes a [`World`](crate::World), with a [`Warning`](crate::Warning) for everything that is not taken
-//! literally. For the number of a predefined map, the original's regions are written into the world.
+//! literally. The original's regions of a predefined map are written into the world.
 
 mod lenient;
 mod mend;

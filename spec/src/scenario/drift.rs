@@ -36,7 +36,7 @@ pub struct RegimeDrift {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: Option<String>,
-    /// How far the drift has come, as a function of its progress.
+    /// The fraction of the drift that is reached, as a function of its progress.
     #[serde(default, skip_serializing_if = "is_default")]
     pub schedule: DriftSchedule,
     /// How values that cannot be interpolated change.
@@ -52,7 +52,7 @@ pub struct RegimeDrift {
     pub until: f64,
 }
 
-/// How far a drift has come, as a function of its progress.
+/// The fraction of a drift that is reached, as a function of its progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 #[schemars(extend("examples" = [
@@ -72,7 +72,7 @@ pub enum DriftSchedule {
 }
 
 impl DriftSchedule {
-    /// How far the drift has come, 0..=1, at a `progress` of 0..=1. Cosine: (1 − cos π·progress) / 2. With steps, the first
+    /// The fraction of the drift, 0..=1, at a `progress` of 0..=1. Cosine: (1 − cos π·progress) / 2. With steps, the first
     /// happens at progress `1 / (steps + 1)`, the last at `steps / (steps + 1)`.
     pub fn at(self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);

@@ -44,11 +44,11 @@ pub enum By {
     #[serde(rename = "occupancy:jaccard")]
     #[strum(serialize = "occupancy:jaccard")]
     OccupancyJaccard,
-    /// Occupied cells: the largest distance from one to the nearest in the other world.
+    /// Occupied cells: the largest distance from a cell to the nearest one in the other world.
     #[serde(rename = "occupancy:hausdorff")]
     #[strum(serialize = "occupancy:hausdorff")]
     OccupancyHausdorff,
-    /// Occupied cells: the mean distance from each to the nearest in the other world.
+    /// Occupied cells: the mean distance from a cell to the nearest one in the other world.
     #[serde(rename = "occupancy:chamfer")]
     #[strum(serialize = "occupancy:chamfer")]
     OccupancyChamfer,
@@ -90,7 +90,7 @@ pub enum By {
     #[serde(alias = "behaviour")]
     #[strum(serialize = "behavior")]
     Behavior,
-    /// How much more often experts succeed in their own worlds.
+    /// How much more often experts succeed in their own worlds than in each other's.
     #[serde(rename = "behavior:success")]
     #[strum(serialize = "behavior:success")]
     BehaviorSuccess,

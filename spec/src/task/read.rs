@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn parameter_that_nothing_reads_is_at_its_default() {
+    fn parameter_that_nothing_reads_has_its_default() {
         let task = TaskSpec::from_json("t", &text("trigger == 'near'")).unwrap();
         let read = |variant: &str| {
             task.variant(variant)

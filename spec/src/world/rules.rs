@@ -48,8 +48,8 @@ fields! {
     ///
     /// The potential is `−scale ×` the distance in metres to the nearest attracting object; it is 0 if there is none, and at
     /// the end of an episode that terminates. The optimal policy of a learner with this discount therefore stays optimal (Ng,
-    /// Harada and Russell 1999): with discount 1, shaping pays every episode that terminates the same total, `scale ×` the
-    /// first distance. When the nearest object is removed, the potential falls to that of the next one, and the step that
+    /// Harada and Russell 1999): with discount 1, the total of shaping is the same in every episode that terminates, `scale ×`
+    /// the initial distance. When the nearest object is removed, the potential falls to that of the next one, and the step that
     /// collects it pays that much less. Conditions on the return ignore shaping.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]

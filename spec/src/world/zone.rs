@@ -29,7 +29,7 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
         pub polygon: Option<Vec<[f64; 2]>> = None => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])).unit("m"),
-        /// A free-form name for logs and people.
+        /// A free-form name, for logs and display.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         pub name: Option<String> = None => Field::ours(Not("it is a name")),

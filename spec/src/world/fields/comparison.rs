@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 
-/// Declares the parts, each with its subject, its element of the decision process, its name in tables, and its unit,
+/// Declares the parts, each with its subject, its element of the decision process, its name in tables, and its unit:
 /// the difference that counts as 1.
 macro_rules! comparisons {
     ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $unit:literal,)+) => {
@@ -42,69 +42,69 @@ macro_rules! comparisons {
 
 comparisons! {
     /// Positions of matched objects.
-    PlacesOfObjects: S, "places of objects", "10 m",
+    PlacesOfObjects: S, "object positions", "10 m",
     /// Objects without a match.
-    Unmatched: S, "objects without a match", "an object",
+    Unmatched: S, "unmatched objects", "an object",
     /// Headings of objects.
-    HeadingsOfObjects: S, "headings of objects", "180 degrees",
+    HeadingsOfObjects: S, "object headings", "180 degrees",
     /// The agent's start.
     Start: S, "agent's start", "10 m",
     /// The agent's heading at the start.
     Heading: S, "agent's heading", "180 degrees",
     /// The meaning of the numbers of an action.
-    ModelOfActions: A, "action model", "another value",
+    ModelOfActions: A, "action model", "a different value",
     /// The action space, and whether the agent can interact and carry.
-    SpaceOfActions: A, "action space", "another value",
+    SpaceOfActions: A, "action space", "a different value",
     /// The agent's maximum speed.
-    LargestSpeed: A, "largest speed", "the larger one",
+    LargestSpeed: A, "maximum speed", "the larger value",
     /// The agent's maximum turn rate.
-    LargestTurnRate: A, "largest turn rate", "the larger one",
+    LargestTurnRate: A, "maximum turn rate", "the larger value",
     /// How objects move by themselves.
-    Motion: T, "motion of objects", "the larger one, or another value",
+    Motion: T, "object motion", "the larger value, or a different value",
     /// Solidity and functions of objects, and the energy that they give.
-    Bodies: T, "bodies of objects", "the larger one, or another value",
+    Bodies: T, "object bodies", "the larger value, or a different value",
     /// Length of a time step in seconds.
-    TimeStep: T, "time step", "the larger one",
+    TimeStep: T, "time step", "the larger value",
     /// The agent's width.
-    Width: T, "agent's width", "the larger one",
+    Width: T, "agent's width", "the larger value",
     /// How the agent's energy changes.
-    EnergyOfAgent: T, "agent's energy", "the larger one, or none",
+    EnergyOfAgent: T, "agent's energy", "the larger value, or none",
     /// The map and its walls.
-    MapAndWalls: T, "map and walls", "the larger one, or another value",
+    MapAndWalls: T, "map and walls", "the larger value, or a different value",
     /// Mazes, rooms and walls that divide the arena.
     Layouts: T, "layouts", "no wall in common, or entirely different paths",
     /// The sides of the arena.
-    ArenaSize: T, "sides of the arena", "the larger one",
+    ArenaSize: T, "arena size", "the larger value",
     /// Positions and effects of zones that affect movement.
-    Zones: T, "zones", "10 m, the larger one, or a zone",
+    Zones: T, "zones", "10 m, the larger value, or a zone",
     /// Rewards of objects.
-    Rewards: R, "rewards of objects", "100 points",
-    /// The stimuli that pay an object's reward.
-    PaidFor: R, "what is paid for", "the larger one, or another value",
+    Rewards: R, "object rewards", "100 points",
+    /// The stimuli for which an object pays its reward, and when it pays.
+    PaidFor: R, "reward conditions", "the larger value, or a different value",
     /// Probability that an object pays.
-    RewardProbabilities: R, "odds of reward", "from never to always",
+    RewardProbabilities: R, "reward probability", "from never to always",
     /// Reward per second.
-    StepReward: R, "step reward", "1 point a second",
+    StepReward: R, "step reward", "1 point per second",
     /// Shaping rewards, and the conditions that end an episode.
-    ShapingAndEndings: R, "shaping and endings", "the larger one, or another value",
+    ShapingAndEndings: R, "shaping and endings", "the larger value, or a different value",
     /// Positions and effects of zones that pay or end an episode.
-    ZonePay: R, "pay and endings of zones", "10 m, the larger one, or a zone",
+    ZonePay: R, "zone rewards and endings", "10 m, the larger value, or a zone",
     /// The limit on the length of an episode.
-    Limit: R, "limit of steps", "the larger one, or none",
+    Limit: R, "episode limit", "the larger value, or none",
     /// The colours of objects.
-    ColorsOfObjects: O, "colours of objects", "black to white in Oklab",
+    ColorsOfObjects: O, "object colours", "black to white in Oklab",
     /// The appearance of objects without a match.
-    UnmatchedLooks: O, "looks without a match", "an object",
+    UnmatchedLooks: O, "appearance of unmatched objects", "an object",
     /// The models of objects.
-    ModelsOfObjects: O, "models of objects", "another value",
+    ModelsOfObjects: O, "object models", "a different value",
     /// The sizes of objects.
-    SizesOfObjects: O, "sizes of objects", "the larger one",
+    SizesOfObjects: O, "object sizes", "the larger value",
     /// Brightness of the sun.
-    Light: O, "light", "the larger one",
+    Light: O, "light", "the larger value",
     /// The colours of walls, sky, ground and sunlight.
-    ColorsOfSurroundings: O, "colours of surroundings", "black to white in Oklab",
+    ColorsOfSurroundings: O, "surrounding colours", "black to white in Oklab",
     /// Positions and colours of visible zones.
-    ZoneLooks: O, "looks of zones", "10 m, the larger one, or a zone",
+    ZoneLooks: O, "zone appearance", "10 m, the larger value, or a zone",
     /// Everything else that affects what the agent sees.
-    CameraAndWeather: O, "camera and weather", "the larger one, or another value",
+    CameraAndWeather: O, "camera and weather", "the larger value, or a different value",
 }
