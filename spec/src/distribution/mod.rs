@@ -365,7 +365,8 @@ pub enum Distribution<N = f64> {
     },
     /// Colours by hue, saturation and value, each uniformly distributed between its ends.
     ColorHsv {
-        /// Hues in degrees from the first to the second: 0 red, 120 green, 240 blue; `[-20, 20]` is a range across red; all if absent.
+        /// Hues in degrees from the first to the second: 0 red, 120 green, 240 blue; `[-20, 20]` is a range across red; all if
+        /// absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         hue: Option<[N; 2]>,
         /// Saturation from 0 (grey) to 1 (full); 0 to 1 if absent.

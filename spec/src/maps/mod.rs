@@ -12,7 +12,8 @@ pub use library::{MapLayout, MapLibrary};
 use crate::world::Region;
 
 /// A built-in layout. 1 backslash: a broken ridge from the north-west corner to the south-east one, with two passes; 2 village:
-/// twelve houses around a square and two lanes; 3 craters: six round pits; 4 bisected: a wall from west to east with a gate at each third.
+/// twelve houses around a square and two lanes; 3 craters: six round pits; 4 bisected: a wall from west to east with a gate at
+/// each third.
 fn built_in(predefined_map: u8) -> Option<&'static MapLayout> {
     static MAPS: LazyLock<MapsDocument> =
         LazyLock::new(|| serde_json::from_str(include_str!("builtin.json")).expect("the built-in layouts are valid"));

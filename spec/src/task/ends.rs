@@ -18,8 +18,8 @@ const MAX_ENDS: usize = 256;
 impl TaskSpec {
     /// The distributions of a parameter at the range ends and choices of all parameters that it depends on, in all
     /// combinations, without duplicates; beyond 256 combinations each parameter varies alone, with the others at their
-    /// defaults. Skips invalid distributions, and combinations that violate a requirement that involves only these and fixed parameters.
-    /// Ignores declared variants. Empty for a parameter without a distribution.
+    /// defaults. Skips invalid distributions, and combinations that violate a requirement that involves only these and
+    /// fixed parameters. Ignores declared variants. Empty for a parameter without a distribution.
     ///
     /// # Example
     /// ```
