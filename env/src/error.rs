@@ -54,8 +54,8 @@ pub enum EnvError {
     },
     /// Outputs need more memory than a batch may use, or than is available.
     #[error(
-        "batch: found outputs of {:.1} GiB, expected at most {} GiB, and as much memory as there is; ask for fewer environments \
-         (num_envs), smaller pictures or fewer modalities",
+        "batch: found outputs of {:.1} GiB, expected at most {} GiB, and no more than the available memory; use fewer \
+         environments (num_envs), smaller pictures or fewer modalities",
         *found as f64 / GIB,
         *most as f64 / GIB
     )]
@@ -67,11 +67,11 @@ pub enum EnvError {
     },
     /// A reset was stopped before every environment had begun its episode.
     #[error(
-        "batch: stopped before every environment had begun its episode, expected a reset of them all before the next step"
+        "batch: stopped before every environment had begun its episode, expected a reset of all of them before the next step"
     )]
     Stopped,
     /// The system cannot start the requested threads.
-    #[error("batch: {wanted} threads cannot be had: {reason}; ask for fewer (num_threads)")]
+    #[error("batch: {wanted} threads could not be started: {reason}; use fewer (num_threads)")]
     BatchThreads {
         /// Requested threads.
         wanted: usize,
@@ -177,7 +177,7 @@ pub enum EnvError {
         limit: usize,
     },
     /// The world has no object with this index.
-    #[error("object: found number {found}, expected less than {count}, the number of objects of this world")]
+    #[error("object: found number {found}, expected less than {count}, the number of objects in this world")]
     NoSuchObject {
         /// The requested index.
         found: usize,
@@ -185,7 +185,7 @@ pub enum EnvError {
         count: usize,
     },
     /// The object is already destroyed and does not respawn.
-    #[error("destroy: found object {object} gone already, expected one that is there or comes back")]
+    #[error("destroy: found object {object}, which is already gone, expected one that is present or will respawn")]
     AlreadyGone {
         /// The object.
         object: usize,
@@ -305,8 +305,8 @@ pub enum EnvError {
     },
     /// A GPU is requested, but none is usable.
     #[error(
-        "renderer gpu: found no graphics adapter that works, expected one ({}); `driftworld doctor` says what is missing, \
-         the renderer cpu works everywhere",
+        "renderer gpu: found no working graphics adapter, expected one ({}); `driftworld doctor` says what is missing, \
+         and the renderer cpu works everywhere",
         tried.join("; ")
     )]
     NoGpu {
@@ -316,7 +316,7 @@ pub enum EnvError {
     /// An image is too large for the GPU.
     #[error(
         "picture: found {width} × {height} points, expected at most {most} each way on {adapter}; draw it with the renderer cpu, \
-         smaller, or with less supersampling",
+         at a smaller size, or with less supersampling",
         adapter = one_line(adapter)
     )]
     GpuPicture {
@@ -407,7 +407,7 @@ mod tests {
                 script: "tour.txt".to_owned(),
                 line: 3,
                 found: "\"zero\"".to_owned(),
-                expected: "how many steps, 1 to 100000".to_owned(),
+                expected: "a number of steps, 1 to 100000".to_owned(),
             },
             EnvError::BadNetwork {
                 file: "net.safetensors".to_owned(),

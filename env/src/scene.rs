@@ -307,8 +307,8 @@ impl Scene {
     }
 }
 
-/// The exposure that ever stronger light approaches, and the intensity that gives half of it. Daylight has an intensity of 2.3
-/// and an exposure of 1. Below that, brightness falls with the intensity; above it, brightness rises ever more slowly.
+/// The limit of the exposure as the light gets stronger, and the intensity that gives half of it. Daylight has an intensity of
+/// 2.3 and an exposure of 1. Below that, brightness falls with the intensity; above it, brightness rises ever more slowly.
 const MAX_EXPOSURE: f32 = 1.72;
 const HALF_INTENSITY: f32 = 1.65;
 

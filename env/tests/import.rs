@@ -328,7 +328,7 @@ fn libraries_override_built_in_models() {
     let (mut library, catalogue) = catalogue("Tree");
     let again = library.insert(Quad::new().import(&options("tree")).model);
     let said = again.expect_err("class names are not case-sensitive").to_string();
-    assert!(said.contains("found one in the library already"), "{said}");
+    assert!(said.contains("found one that the library already has"), "{said}");
     let triangles = |class: &str, model: &str| {
         let asset = catalogue.asset(class, &Model(model.into()));
         (asset.known, asset.levels().next().map(|(triangles, _)| triangles))

@@ -51,7 +51,7 @@ impl Default for Abstraction {
 /// A state is a cell and a heading. Each action starts with everything else as at the start of the world: every object is
 /// present, pays its initial reward, and begins its motion. So the tables reflect walls, the agent's body and speed, the time
 /// step, the duration of actions, the action model, solid and pushed objects, and rewards. Objects that an action collects,
-/// pushes or moves are reset afterwards. Step and time limits are ignored. Rules about the return count only the reward of this
+/// pushes or moves are reset afterwards. Step and time limits are ignored. Rules about the return see only the reward of this
 /// one action. Uncertain rewards pay their mean.
 ///
 /// Actions are in the order listed at [`NUM_MACRO_ACTIONS`]; each is performed at the agent's full speed, with the nearest row

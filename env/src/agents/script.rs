@@ -73,7 +73,7 @@ pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
         let words: Vec<&str> = code.split_whitespace().collect();
         let [first, rest @ ..] = &words[..] else { continue };
         if commands.last() == Some(&Command::Repeat) {
-            let expected = "nothing after repeat, which begins anew".to_owned();
+            let expected = "no command after repeat, which restarts the script".to_owned();
             return Err(wrong(index, (format!("{first:?}"), expected)));
         }
         commands.push(command(first, rest).map_err(|problem| wrong(index, problem))?);
@@ -93,7 +93,7 @@ fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
         // Worlds allow any object name, as the original environment does, so only unprintable names are refused.
         if object.chars().count() > MAX_NAME_CHARS || object.contains(is_unprintable) {
-            let expected = format!("the name of an object: 1 to {MAX_NAME_CHARS} characters that can be seen");
+            let expected = format!("the name of an object: 1 to {MAX_NAME_CHARS} printable characters");
             return Err((quoted(object), expected));
         }
         Ok(Command::Go {
@@ -116,7 +116,7 @@ fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
         ("interact", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Interacted, rest),
         ("near", [object, metres, rest @ ..]) if rest.len() < 2 => {
             let is_valid = |metres: &f32| metres.is_finite() && *metres > 0.0;
-            let metres = parsed(metres, is_valid, "how many metres, more than 0")?;
+            let metres = parsed(metres, is_valid, "a number of metres above 0")?;
             go(object, Until::Near(metres), rest)
         }
         ("tour", []) => Ok(Command::Tour { steps: MAX_STEPS }),
@@ -160,7 +160,7 @@ fn number(word: &str) -> Result<f64, Problem> {
 }
 
 fn steps(word: &str) -> Result<u32, Problem> {
-    let expected = format!("how many steps, 1 to {MAX_STEPS}");
+    let expected = format!("a number of steps, 1 to {MAX_STEPS}");
     parsed(word, |steps| (1..=MAX_STEPS).contains(steps), &expected)
 }
 
@@ -212,17 +212,17 @@ mod tests {
     fn impossible_commands_are_refused_with_their_line() {
         for row in r#"
 step | tuch goal => 2: found command "tuch", expected one of step, action, touch, interact, near, tour, repeat; did you mean "touch"?
-step 0 => 1: found "0", expected how many steps, 1 to 100000
+step 0 => 1: found "0", expected a number of steps, 1 to 100000
 step 5 1 2 => 1: found "step 5 1 2", expected step [N] [A B C | ROW]
 step 5 1 nan 0 => 1: found "nan", expected a number
 step 5 north => 1: found "north", expected the number of a row of the action table, or three numbers
 near goal => 1: found "near goal", expected near NAME METRES [N]
-touch go\u{202e}al => 1: found "go\u{202e}al", expected the name of an object: 1 to 100 characters that can be seen
-near goal -1 => 1: found "-1", expected how many metres, more than 0
-near goal 0 => 1: found "0", expected how many metres, more than 0
-near goal inf => 1: found "inf", expected how many metres, more than 0
-near goal far => 1: found "far", expected how many metres, more than 0
-tour | repeat | step => 3: found "step", expected nothing after repeat, which begins anew
+touch go\u{202e}al => 1: found "go\u{202e}al", expected the name of an object: 1 to 100 printable characters
+near goal -1 => 1: found "-1", expected a number of metres above 0
+near goal 0 => 1: found "0", expected a number of metres above 0
+near goal inf => 1: found "inf", expected a number of metres above 0
+near goal far => 1: found "far", expected a number of metres above 0
+tour | repeat | step => 3: found "step", expected no command after repeat, which restarts the script
 # nothing |  |  => 2: found a script without a command, expected one of step, action, touch, interact, near, tour, repeat"#
             .trim()
             .lines()

@@ -131,19 +131,24 @@ impl Message {
             Some(Value::String(token)) if token.chars().count() <= MAX_TOKEN_CHARS => Some(token.clone()),
             Some(Value::String(_)) => {
                 return refuse(format!(
-                    "token: found a longer text, expected at most {MAX_TOKEN_CHARS} characters"
+                    "token: found a longer string, expected at most {MAX_TOKEN_CHARS} characters"
                 ));
             }
-            Some(other) => return refuse(format!("token: found {}, expected a text such as a UUID", kind(other))),
+            Some(other) => {
+                return refuse(format!(
+                    "token: found {}, expected a string such as a UUID",
+                    kind(other)
+                ));
+            }
         };
         let refuse = |text: String| Err((token.clone(), Refusal::new(text)));
         // The original client sends times without a time zone; nothing depends on them.
         if let Some(time) = all.get("msg_time").filter(|time| !time.is_string() && !time.is_null()) {
-            return refuse(format!("msg_time: found {}, expected a text in ISO 8601", kind(time)));
+            return refuse(format!("msg_time: found {}, expected a string in ISO 8601", kind(time)));
         }
         let action = match all.get("action") {
             Some(Value::String(action)) => action.trim().to_lowercase(),
-            Some(other) => return refuse(format!("action: found {}, expected a text", kind(other))),
+            Some(other) => return refuse(format!("action: found {}, expected a string", kind(other))),
             None => return refuse("message: found no action, expected one".to_owned()),
         };
         let payload = all.remove("payload").filter(|payload| !payload.is_null());

@@ -41,7 +41,7 @@ pub(super) fn create(environment: &mut Environment, message: &Message) -> Result
         Some(Value::String(name)) => object.unique_name = Some(name.clone()),
         Some(other) => {
             return Err(Refusal::new(format!(
-                "unique_name: found {}, expected a text",
+                "unique_name: found {}, expected a string",
                 kind(other)
             )));
         }
@@ -71,7 +71,7 @@ pub(super) fn parts(message: &Message) -> Result<Vec<&'static str>, Refusal> {
     };
     let part = |name: &Value| {
         let Some(name) = name.as_str() else {
-            return Err(Refusal::new(format!("state: found {}, expected texts", kind(name))));
+            return Err(Refusal::new(format!("state: found {}, expected strings", kind(name))));
         };
         let known = PARTS.into_iter().find(|part| part.eq_ignore_ascii_case(name));
         known.ok_or_else(|| unknown("state", name, &PARTS))
@@ -86,7 +86,7 @@ pub(super) fn screenshot(environment: &Environment, message: &Message) -> Result
     let payload = message.payload("a filename")?;
     let Some(filename) = payload.get("filename").and_then(Value::as_str) else {
         return Err(Refusal::new(
-            "payload/filename: found no text, expected the name of a PNG file",
+            "payload/filename: found no string, expected the name of a PNG file",
         ));
     };
     let [width, height] = environment.world().agent_params.picture_size();

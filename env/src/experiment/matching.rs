@@ -69,7 +69,7 @@ impl Paired {
         let number = |counts: &BTreeMap<Kind, usize>, kind: &Kind| counts.get(kind).copied().unwrap_or(0);
         let differs = |kind: &&Kind| number(own, kind) != number(other, kind) && a.shares_counts(b, kind);
         let found = kinds.into_iter().find(differs)?;
-        let what = format!("the number of objects {} at the start", display_name(found));
+        let what = format!("the number of {} objects at the start", display_name(found));
         Some(Difference::new(what, number(own, found), number(other, found)))
     }
 
@@ -77,21 +77,19 @@ impl Paired {
     pub(super) fn start_difference(&self) -> Option<Difference> {
         let [a, b] = &self.worlds;
         let (own, other) = (&a.agent_params, &b.agent_params);
-        let agent =
-            Difference::of("where the agent starts in metres", &own.coordinates, &other.coordinates).or_else(|| {
-                Difference::of(
-                    "where the agent looks at the start in degrees",
-                    &own.heading,
-                    &other.heading,
-                )
-            });
+        let agent = Difference::of(
+            "the agent's start position in metres",
+            &own.coordinates,
+            &other.coordinates,
+        )
+        .or_else(|| Difference::of("the agent's start heading in degrees", &own.heading, &other.heading));
         let object_difference = |(index, (own, other)): (usize, (&Object, &Object))| {
             let of = |what: &str| format!("{what} of object {index} ({}) at the start", display_name(&kind(own)));
             Difference::of(of("the position in metres"), &own.coordinates, &other.coordinates)
                 .or_else(|| Difference::of(of("the heading in degrees"), &own.heading, &other.heading))
                 .or_else(|| {
                     let [own, other] = [own, other].map(|object| object.door.as_ref().is_some_and(|door| door.open));
-                    Difference::of(of("whether it is open"), &own, &other)
+                    Difference::of(of("the open state"), &own, &other)
                 })
         };
         let energy = || {

@@ -73,7 +73,7 @@ impl StateSpace {
                 format!("{low} to {high}")
             }
         });
-        let what = format!("the number of objects {} that there are", display_name(found));
+        let what = format!("the number of {} objects over all worlds", display_name(found));
         Some(Difference { what, own: a, other: b })
     }
 }
@@ -107,12 +107,12 @@ pub(super) fn action_difference(a: &World, b: &World) -> Option<Difference> {
         ActionModel::ByVelocity | ActionModel::ByWaypoint => "obeyed",
     };
     Difference::of("the form of an action", &space(own), &space(other))
-        .or_else(|| Difference::of("what becomes of an action", &effect(own), &effect(other)))
+        .or_else(|| Difference::of("the effect of an action", &effect(own), &effect(other)))
         .or_else(|| {
             let mut actions_to_test = actions_to_test(own).into_iter();
             actions_to_test.find_map(|action| {
                 Difference::of(
-                    format!("what the body does in a second by {}", describe(action)),
+                    format!("the body's motion in a second of {}", describe(action)),
                     &intent_text(a, action),
                     &intent_text(b, action),
                 )
@@ -177,7 +177,7 @@ pub(super) fn observation_difference(a: &World, b: &World, is_chosen: bool) -> O
         })
         .or_else(|| {
             Difference::of(
-                "what the state vector holds",
+                "the features of the state vector",
                 &own.state_features,
                 &other.state_features,
             )

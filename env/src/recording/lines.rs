@@ -122,7 +122,7 @@ pub(super) fn with_checksum(line: &impl Serialize) -> String {
 /// Verifies the checksum of a line without its line ending; the error is what was found, and what was expected.
 pub(super) fn check_checksum(line: &[u8]) -> Result<(), (String, String)> {
     let expected = || "a line of JSON that ends with its checksum".to_owned();
-    let text = std::str::from_utf8(line).map_err(|_| ("bytes that are no text".to_owned(), expected()))?;
+    let text = std::str::from_utf8(line).map_err(|_| ("bytes that are not UTF-8".to_owned(), expected()))?;
     let (body, expected_sum) = text
         .rsplit_once(CHECKSUM_KEY)
         .and_then(|(body, rest)| Some((body, rest.strip_suffix("\"}")?)))

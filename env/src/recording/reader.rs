@@ -62,7 +62,7 @@ impl<R: BufRead> RecordingReader<R> {
             worlds: BTreeMap::new(),
             is_truncated: false,
         };
-        let expected = "the first line of a file of recordings, as run --record writes it";
+        let expected = "the first line of a recordings file, as written by run --record";
         let Some(line) = this.line()? else {
             return Err(wrong(this.line, "an empty file", expected));
         };
@@ -124,7 +124,13 @@ impl<R: BufRead> RecordingReader<R> {
         let actions = stored.actions.unpack(stored.steps).map_err(at_episode)?;
         let ended_by = stored.ended_by.as_deref().map(|word| {
             let parsed = word.parse::<EndedBy>();
-            parsed.map_err(|_| wrong(episode.line, format!("ended_by {word:.40}"), "a word of this version"))
+            parsed.map_err(|_| {
+                wrong(
+                    episode.line,
+                    format!("ended_by {word:.40}"),
+                    "a word that this version knows",
+                )
+            })
         });
         let edits = stored.edits.iter().map(|(step, hash)| {
             Ok(Edit {
@@ -153,7 +159,7 @@ impl<R: BufRead> RecordingReader<R> {
     {
         let by = place.offset.cast_signed() - self.offset.cast_signed();
         let result = self.reader.seek_relative(by);
-        result.map_err(|error| wrong(self.line, error.to_string(), "a file that can be read"))?;
+        result.map_err(|error| wrong(self.line, error.to_string(), "a readable file"))?;
         (self.line, self.offset) = (place.line, place.offset);
         Ok(())
     }
@@ -200,12 +206,12 @@ impl<R: BufRead> RecordingReader<R> {
     fn world(&self, line: u64, hash: &str) -> Result<World, EnvError> {
         let missing = || {
             let found = format!("world {hash:.16}, which has no line before it");
-            wrong(line, found, "its line: it is damaged, or gone")
+            wrong(line, found, "that line: it is damaged or missing")
         };
         let (line, packed) = self.worlds.get(hash).ok_or_else(missing)?;
         let at_world = |(found, expected): (String, String)| wrong(*line, found, expected);
         let bytes = inflated(packed, MAX_BYTES as u64).map_err(at_world)?;
-        let text = String::from_utf8(bytes).map_err(|_| wrong(*line, "bytes that are no text", "a world"))?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong(*line, "bytes that are not UTF-8", "a world"))?;
         let world = World::from_json("world", &text)
             .map_err(|error| wrong(*line, error.to_string(), "a world of this version"))?;
         let found = world.hash();
@@ -227,7 +233,7 @@ impl<R: BufRead> RecordingReader<R> {
         self.line += 1;
         match read {
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
-                return Err(wrong(self.line, error.to_string(), "a file that can be read"));
+                return Err(wrong(self.line, error.to_string(), "a readable file"));
             }
             _ if line.is_empty() => return Ok(None),
             _ => {}
@@ -235,7 +241,8 @@ impl<R: BufRead> RecordingReader<R> {
         self.offset += line.len() as u64;
         if line.pop() != Some(b'\n') {
             self.is_truncated = true;
-            let advice = "a line end: the writer was stopped in the midst of it; what stands before it is whole";
+            let advice =
+                "a line ending: the writer was stopped in the middle of this line; the lines before it are intact";
             return Err(wrong(self.line, "the end of the file", advice));
         }
         check_checksum(&line).map_err(|(found, expected)| wrong(self.line, found, expected))?;

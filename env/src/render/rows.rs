@@ -24,8 +24,8 @@ const MIN_TEXEL_COLUMNS: f32 = 1.25;
 /// Number of finest texels across a pixel's width at which the detail starts to appear, and at which it reaches full strength.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
-/// The layer of clouds: its height above the eye in metres, metres per side of its tile, and the slope of a ray from which on
-/// it is fully visible.
+/// The layer of clouds: its height above the eye in metres, metres per side of its tile, and the minimum slope of
+/// a ray at which it is fully visible.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
 
 /// Covering of the ceiling.

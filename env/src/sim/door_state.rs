@@ -9,7 +9,7 @@ pub(super) struct DoorState {
     pub(super) object: usize,
     /// Whether its key was used.
     pub(super) unlocked: bool,
-    /// The time step from which on it closes as soon as nothing stands in it.
+    /// The time step in which it is due to close. It then closes as soon as nothing stands in it.
     pub(super) closes_at: Option<u64>,
 }
 

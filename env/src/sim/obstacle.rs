@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum Obstacle {
     /// The position is outside the arena, or not finite.
-    #[strum(to_string = "no ground of the arena")]
+    #[strum(to_string = "a place outside the arena")]
     Outside,
     /// A wall, or a region that cannot be entered.
     #[strum(to_string = "a wall")]

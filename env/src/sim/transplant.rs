@@ -144,7 +144,7 @@ impl Environment {
         Difference::of("the agent's position in metres", &agent.position, &its.position)
             .or_else(|| Difference::of("the agent's heading in degrees", &agent.heading_deg, &its.heading_deg))
             .or_else(|| Difference::of("the agent's velocity in m/s", &agent.velocity, &its.velocity))
-            .or_else(|| Difference::of("the seconds gone by", &self.seconds(), &other.seconds()))
+            .or_else(|| Difference::of("the elapsed time in seconds", &self.seconds(), &other.seconds()))
             .or_else(|| (0..own.objects.len()).find_map(|index| self.object_difference(other, index)))
             .or_else(|| Difference::of("the objects that the agent touches", &own.contacts, &their.contacts))
             .or_else(|| {
@@ -153,10 +153,10 @@ impl Environment {
                 let difference = Difference::of("the zones that the agent is in", &own, &their);
                 difference.filter(|_| have_same_zones(&self.world, &other.world))
             })
-            .or_else(|| Difference::of("what the agent carries", &own.carried, &their.carried))
+            .or_else(|| Difference::of("the objects that the agent carries", &own.carried, &their.carried))
             .or_else(|| Difference::of("the agent's energy", &own.energy, &their.energy))
-            .or_else(|| Difference::of("how what was pushed moves", &own.pushed, &their.pushed))
-            .or_else(|| Difference::of("when objects come back", &self.returns(), &other.returns()))
+            .or_else(|| Difference::of("the motion of pushed objects", &own.pushed, &their.pushed))
+            .or_else(|| Difference::of("the times at which objects respawn", &self.returns(), &other.returns()))
     }
 
     /// Respawning objects: their indices, and the times in seconds at which they are due.
@@ -182,19 +182,19 @@ impl Environment {
             place.ok().map(|place| Mover::progress(&state.movers[place]))
         };
         Difference::of(of("the presence"), &own.present, &their.present)
-            .or_else(|| Difference::of(of("whether it is open"), &own.open, &their.open))
+            .or_else(|| Difference::of(of("the open state"), &own.open, &their.open))
             .or_else(|| {
                 let [own, their] = [self, other].map(|one| one.state.is_unlocked(index));
-                Difference::of(of("whether it is unlocked"), &own, &their)
+                Difference::of(of("the unlocked state"), &own, &their)
             })
             .or_else(|| {
                 let [own, their] = [self, other].map(|one| one.closes_at(index));
-                Difference::of(of("the second at which it closes"), &own, &their)
+                Difference::of(of("the closing time in seconds"), &own, &their)
             })
             .or_else(|| Difference::of(of("the position in metres"), &own.position, &their.position))
             .or_else(|| Difference::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
             .or_else(|| {
-                let collected = Difference::of(of("whether it is found"), &own.collected, &their.collected);
+                let collected = Difference::of(of("the collected state"), &own.collected, &their.collected);
                 collected.filter(|_| counts)
             })
             .or_else(|| {

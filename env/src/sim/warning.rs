@@ -35,7 +35,9 @@ pub enum Warning {
         enclosure: Enclosure,
     },
     /// The agent starts inside an obstacle; it cannot move until it is moved out.
-    #[strum(to_string = "/agent_params/coordinates: found {obstacle}, expected free ground; it may not get out")]
+    #[strum(
+        to_string = "/agent_params/coordinates: found {obstacle}, expected free ground; it may be unable to get out"
+    )]
     StartsInside {
         /// The obstacle.
         obstacle: Obstacle,
@@ -51,8 +53,8 @@ pub enum Warning {
     /// A pushable object is in a heap: more bodies overlap it than a time step can separate, so it stays put until there are
     /// fewer. Only the first such object of a world is reported.
     #[strum(
-        to_string = "/objects/{object}/coordinates: found {bodies} bodies in the place of one that can be pushed, expected at \
-        most {limit}; it stands fast until there are fewer: spread them"
+        to_string = "/objects/{object}/coordinates: found {bodies} bodies that overlap a pushable object, expected at \
+        most {limit}; it stays in place until there are fewer: spread them out"
     )]
     Heap {
         /// Index of the object.

@@ -85,7 +85,7 @@ impl<'a> Safetensors<'a> {
             tensors: BTreeMap::new(),
             data: &[],
         };
-        let kind = "a network in the format safetensors, as `export` of a learner writes it";
+        let kind = "a network in safetensors format, as written by a learner's `export`";
         let Some((length, rest)) = bytes.split_first_chunk() else {
             return Err(file.bad("length of the header", format!("a file of {} bytes", bytes.len()), kind));
         };
@@ -100,7 +100,7 @@ impl<'a> Safetensors<'a> {
         file.tensors = serde_json::from_slice(header).map_err(|error| file.bad("header", error.to_string(), kind))?;
         let metadata = file.tensors.remove("__metadata__").unwrap_or_default();
         file.metadata = Deserialize::deserialize(&metadata)
-            .map_err(|_| file.bad("__metadata__", shown(&metadata), format!("texts by name, in {kind}")))?;
+            .map_err(|_| file.bad("__metadata__", shown(&metadata), format!("strings by name, in {kind}")))?;
         Ok(file)
     }
 
@@ -178,7 +178,7 @@ impl<'a> Safetensors<'a> {
         let data = length_matches.then(|| self.data.get(start..end)).flatten();
         let Some(data) = data else {
             let expected = format!(
-                "a place of {} bytes in data of {}",
+                "a range of {} bytes within {} bytes of data",
                 bytes.unwrap_or(u64::MAX),
                 self.data.len()
             );

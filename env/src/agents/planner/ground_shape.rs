@@ -3,7 +3,7 @@
 use crate::assets::ColliderShape;
 use crate::sim::SimRef;
 
-/// Pushable bodies are planned for at multiples of this, in metres.
+/// Plans round the positions of pushable bodies to multiples of this, in metres.
 const ROUGH: f32 = 0.25;
 
 /// The area of ground that a body covers: a rectangle or a disc.
@@ -33,7 +33,7 @@ impl GroundShape {
         }
     }
 
-    /// A disc of about this size, moved to a nearby point of a coarse grid, so that it changes seldom while the body is pushed.
+    /// A disc of about this size, moved to a nearby point of a coarse grid, so that it seldom changes while the body is pushed.
     pub(super) fn roughly(self) -> Self {
         Self {
             at: self.at.map(|metres| (metres / ROUGH).round() * ROUGH),

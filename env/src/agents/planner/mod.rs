@@ -1,5 +1,5 @@
 //! Plans the expert's way to what pays: around obstacles, through doors, by keys, switches and portable things. The planner
-//! knows the map and the rules, and acts only as an episode allows.
+//! knows the map and the rules, but takes only actions that the episode allows.
 //!
 //! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the next subgoal, `subgoal.rs` carries it out, and
 //! `floor.rs`, `zone_costs.rs`, `flood.rs` and `ways.rs` find the path. The next step depends only on the state of the world
@@ -33,14 +33,14 @@ use crate::sim::SimRef;
 /// Steps after which a goal that was not reached is postponed, if there are others.
 const PATIENCE: u32 = 3000;
 
-/// Unstick rule `(period, backoff)`: an agent that does not get ahead backs up in the last steps of each period, longer every
+/// Unstick rule `(period, backoff)`: an agent that makes no headway backs up in the last steps of each period, longer every
 /// time. After the first period, paths lead around pushable objects.
 const STUCK: (u32, u32) = (100, 4);
 
-/// Steps after which the rule also holds for an agent that gets ahead, since it may walk in a circle.
+/// Steps after which the rule also applies to an agent that walks forwards, since it may walk in a circle.
 const CIRCLING: u32 = 1000;
 
-/// Blocked rule `(first, each)`: from step `first` on a target, look every `each` steps for a portable thing in the way.
+/// Blocked rule `(first, each)`: after `first` steps on a target, look every `each` steps for a portable thing in the way.
 const BLOCKED: (u32, u32) = (40, 5);
 
 /// Distance in metres from the edge of a respawning object at which the agent waits for it.

@@ -262,7 +262,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The first subgoal of entering a zone; `None` if it cannot be reached.
+    /// The first subgoal on the way into a zone; `None` if the zone cannot be reached.
     pub(super) fn subgoal_to_enter(&self, index: usize, zone: &Zone) -> Option<Subgoal> {
         let rooms = self.floor.cells_in(zone).into_iter();
         let mut rooms: Vec<Room> = rooms.map(|cell| self.floor.room[cell as usize]).collect();
@@ -339,7 +339,7 @@ impl<'a> Plan<'a> {
         first
     }
 
-    /// The first subgoal of opening a door, setting off a switch or picking up a thing.
+    /// The first subgoal for opening a door, setting off a switch or picking up a thing.
     fn subgoal_to_activate(&self, object: u32) -> Option<Subgoal> {
         let parts = &self.sim.world.objects[object as usize];
         if parts.door.is_some() && !self.sim.objects()[object as usize].open {

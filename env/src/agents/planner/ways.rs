@@ -86,7 +86,7 @@ impl Ways {
         self.around.begin(floor, start.as_slice());
     }
 
-    /// Length in metres of the path from the position looked around from to an object in the same room, where costly ground
+    /// Length in metres of the path from the position given to [`Self::look_around`] to an object in the same room; costly ground
     /// counts as longer.
     pub(super) fn length_to(&mut self, sim: SimRef, floor: &Floor, object: u32) -> f32 {
         let here = sim.agent().position;
@@ -105,7 +105,7 @@ impl Ways {
         lengths.fold(f32::INFINITY, f32::min)
     }
 
-    /// Leads to an object, or to `place` where it was a while ago: far away, its movement is followed only roughly.
+    /// Leads to an object, or to `place`, its earlier position: the movement of a distant object is followed only roughly.
     pub(super) fn lead_to(&mut self, sim: SimRef, floor: &Floor, object: u32, room: Room, place: &mut [f64; 2]) {
         let (here, now) = (sim.agent().position, sim.objects()[object as usize].position);
         let known = |place: &[f64; 2]| place.map(|metres| metres as f32);
@@ -127,7 +127,7 @@ impl Ways {
         self.object = Some((floor.version, object, room, shape.at));
     }
 
-    /// Leads to the cells of a room in these zones, all worth as much as the zone of this index.
+    /// Leads to the cells of a room in these zones, all worth as much as the zone with this index.
     pub(super) fn lead_into<'a>(
         &mut self,
         floor: &Floor,

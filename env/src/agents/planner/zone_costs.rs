@@ -103,7 +103,7 @@ impl ZoneCosts {
         }
     }
 
-    /// The most that entering zones may cost.
+    /// The maximum cost of entering zones.
     pub(super) fn max_entry(&self) -> u32 {
         self.entering.iter().copied().max().unwrap_or(0)
     }
@@ -114,7 +114,7 @@ impl ZoneCosts {
     }
 }
 
-/// What a second costs, and a metre at full speed.
+/// The cost of a second, and of a metre at full speed.
 pub(super) fn costs_of_time(world: &World) -> [f64; 2] {
     let (agent, rules) = (&world.agent_params, &world.rules);
     let step = agent.time_step * f64::from(agent.frame_skip.max(1));

@@ -131,14 +131,14 @@ impl Buffers<'_> {
 }
 
 impl CheckedAccessor<'_> {
-    /// The bytes from the first element on, the stride, and the size of a number. Guarantees that all elements are within
+    /// The bytes starting at the first element, the stride, and the size of a number. Guarantees that all elements are within
     /// bounds.
     fn bytes<'b>(&self, buffers: &'b Buffers) -> Result<(&'b [u8], usize, usize), EnvError> {
         let Some(view) = self.accessor.buffer_view else {
             return Err(refuse(
                 self.place.as_str(),
                 "no bufferView",
-                "one: there is nothing to read",
+                "one: without it there is nothing to read",
             ));
         };
         let view = buffers.view(view, &self.place)?;
@@ -147,7 +147,7 @@ impl CheckedAccessor<'_> {
         let stride = view.stride.unwrap_or(element);
         if stride < element {
             let found = format!("elements of {element} bytes, {stride} apart");
-            return Err(refuse(self.place.as_str(), found, "a byteStride of their size or more"));
+            return Err(refuse(self.place.as_str(), found, "a byteStride of that size or more"));
         }
         let offset = self.accessor.byte_offset.map_or(0, |offset| offset.0);
         // The count and the stride are bounded by now; only the offset may be arbitrary.
@@ -156,8 +156,8 @@ impl CheckedAccessor<'_> {
             .checked_add(span)
             .is_some_and(|end| end <= view.bytes.len() as u64);
         if !fits {
-            let found = format!("{} elements in {span} bytes from byte {offset} on", self.count);
-            let expected = format!("a range within the view's {}", view.bytes.len());
+            let found = format!("{} elements in {span} bytes starting at byte {offset}", self.count);
+            let expected = format!("a range in the view's {} bytes", view.bytes.len());
             return Err(refuse(self.place.as_str(), found, expected));
         }
         Ok((&view.bytes[offset as usize..], stride, size))

@@ -40,11 +40,7 @@ impl<'a> Buffers<'a> {
             if length > bytes.len() as u64 {
                 let found = format!("{length} bytes");
                 let place = format!("{place}/byteLength");
-                return Err(refuse(
-                    place,
-                    found,
-                    format!("at most the {} that are there", bytes.len()),
-                ));
+                return Err(refuse(place, found, format!("at most the {} available", bytes.len())));
             }
             total += bytes.len();
             at_most(MAX_BYTES, total, "bytes", "/buffers")?;
@@ -64,8 +60,8 @@ impl<'a> Buffers<'a> {
         let whole = buffer.byte_length.0;
         let end = offset.checked_add(length).filter(|end| *end <= whole);
         let Some(end) = end else {
-            let found = format!("{length} bytes from byte {offset} on");
-            return Err(refuse(place, found, format!("a range within the buffer's {whole}")));
+            let found = format!("{length} bytes starting at byte {offset}");
+            return Err(refuse(place, found, format!("a range in the buffer's {whole} bytes")));
         };
         let stride = view.byte_stride.as_ref().map(|stride| stride.0);
         if let Some(stride) = stride.filter(|stride| !(4..=252).contains(stride) || stride % 4 != 0) {

@@ -13,7 +13,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     }
     let (Some(version), Some(length)) = (number(bytes, 4), number(bytes, 8)) else {
         let found = format!("{} bytes", bytes.len());
-        return Err(refuse("GLB header", found, "12 or more"));
+        return Err(refuse("GLB header", found, "at least 12"));
     };
     if version != 2 {
         let found = format!("version {version}");
@@ -43,16 +43,12 @@ fn chunk(bytes: &[u8], index: usize) -> Result<(u32, &[u8], &[u8]), EnvError> {
     let place = || format!("GLB chunk {index}");
     let (Some(length), Some(kind)) = (number(bytes, 0), number(bytes, 4)) else {
         let found = format!("{} bytes", bytes.len());
-        return Err(refuse(place(), found, "a header of 8"));
+        return Err(refuse(place(), found, "a header of 8 bytes"));
     };
     let data = &bytes[8..];
     if length as usize > data.len() {
         let found = format!("a length of {length} bytes");
-        return Err(refuse(
-            place(),
-            found,
-            format!("at most the {} that are there", data.len()),
-        ));
+        return Err(refuse(place(), found, format!("at most the {} available", data.len())));
     }
     let (data, rest) = data.split_at(length as usize);
     Ok((kind, data, rest))

@@ -39,7 +39,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     check_extent(json)?;
     let root: Root = gltf_json::deserialize::from_str(json).map_err(|error| {
         if is_version_1(json) {
-            return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
+            return refuse("file", "glTF 1.0", "glTF 2.0; export it in that version");
         }
         // Cuts the position from the parser's message, because it is reported separately.
         let message = error.to_string();

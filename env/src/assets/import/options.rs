@@ -47,7 +47,7 @@ impl ImportSize {
                 format!("at most {MAX_MODEL_REACH} m"),
             )),
             Self::Height(_) if height > 0.0 => Ok(requested / height),
-            Self::Height(_) => Err(refuse(place, "a flat model, of no height", "a scale in its place")),
+            Self::Height(_) => Err(refuse(place, "a flat model without height", "a scale instead")),
         }
     }
 }

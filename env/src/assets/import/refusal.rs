@@ -30,7 +30,7 @@ pub(super) fn at_most(most: usize, found: usize, what: &str, place: &str) -> Res
 /// The valid indices of a list of this length, for messages.
 pub(super) fn one_of(length: usize) -> String {
     match length {
-        0 => "none, for there are none".to_owned(),
+        0 => "none, since there are none".to_owned(),
         1 => "0, the only one".to_owned(),
         length => format!("0 to {}", length - 1),
     }

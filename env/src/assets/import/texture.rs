@@ -99,7 +99,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         let image = named(&self.buffers.root.images, index, "image", from)?;
         if self.images.len() >= MAX_IMAGES {
             let found = format!("more than {MAX_IMAGES} images in use");
-            return Err(refuse("/images", found, "at most that"));
+            return Err(refuse("/images", found, "no more than that"));
         }
         let place = format!("/images/{index}");
         let owned;
@@ -135,7 +135,7 @@ impl<'a, 'b> Textures<'a, 'b> {
 
 fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     let unreadable =
-        |error: png::DecodingError| refuse(place, format!("a PNG that cannot be read: {error}"), "a whole one");
+        |error: png::DecodingError| refuse(place, format!("a PNG that cannot be read: {error}"), "a complete PNG");
     let limits = png::Limits { bytes: 128 << 20 };
     let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());

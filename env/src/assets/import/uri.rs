@@ -18,7 +18,7 @@ pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec
         let path = path_inside(uri, place)?;
         read(&path).map_err(|reason| {
             let found = format!("{}, which cannot be read: {reason}", quoted(&path));
-            refuse(place, found, "a file beside this one")
+            refuse(place, found, "a readable file next to this one")
         })?
     };
     at_most(MAX_IMPORT_BYTES, bytes.len(), "bytes", place)?;
@@ -39,7 +39,7 @@ fn embedded(uri: &str, place: &str) -> Result<Vec<u8>, EnvError> {
 
 /// A URI as a relative path that stays inside the folder.
 fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
-    let expected = "the relative path of a file in the folder of this one";
+    let expected = "the relative path of a file in the same folder";
     let outside = || refuse(place, quoted(uri), expected);
     let path = percent_decoded(uri).ok_or_else(outside)?;
     let leads_out = |part: &str| part == ".." || part.is_empty();

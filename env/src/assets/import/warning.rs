@@ -12,7 +12,7 @@ pub enum ImportWarning {
     #[strum(to_string = "/animations: left out; models do not move")]
     Animations,
     /// Skins: models with bones keep their rest shape.
-    #[strum(to_string = "/skins: left out; the model stands as it does without bones")]
+    #[strum(to_string = "/skins: left out; the model keeps its rest pose")]
     Skins,
     /// Morph targets: the undeformed shape is drawn.
     #[strum(to_string = "/meshes: morph targets are left out")]
@@ -25,7 +25,7 @@ pub enum ImportWarning {
     Transparency,
     /// A texture in a format other than PNG: the material keeps its plain colour.
     #[strum(
-        to_string = "/images/{image}: {found} is not read; its materials keep their plain colour, or convert it to PNG"
+        to_string = "/images/{image}: {found} is not supported, so its materials keep their plain colour; convert it to PNG to see it"
     )]
     TextureFormat {
         /// Index of the image in the file.
@@ -35,7 +35,7 @@ pub enum ImportWarning {
     },
     /// A texture without an image, or with one that only an extension refers to: the material keeps its plain colour.
     #[strum(
-        to_string = "/textures/{texture}: it names no image; its materials keep their plain colour, or export it as PNG"
+        to_string = "/textures/{texture}: it refers to no image, so its materials keep their plain colour; export it as PNG to see it"
     )]
     TextureWithoutImage {
         /// Index of the texture in the file.
@@ -43,12 +43,12 @@ pub enum ImportWarning {
     },
     /// Textured surfaces without texture coordinates: the material keeps its plain colour.
     #[strum(
-        to_string = "/meshes: textured surfaces without the texture coordinates that their material asks for keep its plain colour"
+        to_string = "/meshes: textured surfaces without the texture coordinates that their material requires keep its plain colour"
     )]
     NoTexturePlaces,
     /// Textures transformed by `KHR_texture_transform`: the transform is ignored.
     #[strum(
-        to_string = "/extensionsUsed: KHR_texture_transform is left out; textures that it moves or scales give other colours"
+        to_string = "/extensionsUsed: KHR_texture_transform is left out; textures that it moves or scales will show different colours"
     )]
     TextureTransform,
 }

@@ -43,7 +43,7 @@ impl Library {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvError> {
         let mut reader = Reader::new(bytes);
         if reader.take(8).ok() != Some(MAGIC) {
-            return Err(bad(0, "other bytes", "DRIFTLIB, the beginning of a library"));
+            return Err(bad(0, "other bytes", "DRIFTLIB, with which a library starts"));
         }
         let version = reader.u32()?;
         if version != VERSION {
@@ -58,12 +58,8 @@ impl Library {
             return Err(bad(HEADER_BYTES, &found, &format!("{length}, as the header says")));
         }
         if Sha256::digest(body).as_slice() != digest {
-            let found = "a checksum that does not fit";
-            return Err(bad(
-                20,
-                found,
-                "the models as they were written; pack the library again",
-            ));
+            let found = "a checksum that does not match";
+            return Err(bad(20, found, "unchanged models; pack the library again"));
         }
         let at = reader.at;
         let count = reader.u32()? as usize;
@@ -80,7 +76,7 @@ impl Library {
             added.map_err(|error| bad(at, &error.to_string(), "each model once"))?;
         }
         if reader.at != bytes.len() {
-            let found = format!("{} bytes behind the last model", bytes.len() - reader.at);
+            let found = format!("{} bytes after the last model", bytes.len() - reader.at);
             return Err(bad(reader.at, &found, "the end"));
         }
         Ok(library)
@@ -219,7 +215,7 @@ mod tests {
         }
         check(
             b"GIF89a",
-            "library, byte 0: found other bytes, expected DRIFTLIB, the beginning of a library",
+            "library, byte 0: found other bytes, expected DRIFTLIB, with which a library starts",
         );
         let many = with_header(&u32::MAX.to_le_bytes());
         check(
@@ -234,7 +230,7 @@ mod tests {
         let end = long.len() - 1;
         check(
             &long,
-            &format!("library, byte {end}: found 1 bytes behind the last model, expected the end"),
+            &format!("library, byte {end}: found 1 bytes after the last model, expected the end"),
         );
     }
 

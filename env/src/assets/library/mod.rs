@@ -58,11 +58,11 @@ impl Library {
         };
         if self.models.len() >= MAX_LIBRARY_MODELS {
             let found = format!("a library of {MAX_LIBRARY_MODELS} models");
-            return refuse(&found, "fewer; begin another library");
+            return refuse(&found, "fewer; start another library");
         }
         if !self.keys.insert(key(&model.class, &model.name)) {
-            let expected = "each class and model once; give another class or model";
-            return refuse("one in the library already", expected);
+            let expected = "each class and model once; choose another class or model name";
+            return refuse("one that the library already has", expected);
         }
         self.models.push(model);
         Ok(())

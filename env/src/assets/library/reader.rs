@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
     pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], EnvError> {
         let left = &self.bytes[self.at..];
         let Some(taken) = left.get(..count) else {
-            let found = format!("{} bytes to the end", left.len());
+            let found = format!("{} bytes before the end", left.len());
             return Err(bad(self.at, &found, &format!("{count}")));
         };
         self.at += count;
@@ -73,7 +73,7 @@ impl<'a> Reader<'a> {
     fn text(&mut self) -> Result<String, EnvError> {
         let (at, length) = (self.at, self.u16()?);
         let bytes = self.take(usize::from(length))?;
-        let text = std::str::from_utf8(bytes).map_err(|_| bad(at, "a name that is not UTF-8", "text"))?;
+        let text = std::str::from_utf8(bytes).map_err(|_| bad(at, "a name that is not UTF-8", "UTF-8"))?;
         Ok(text.to_owned())
     }
 

@@ -1,23 +1,23 @@
-// What lies behind all objects: sky, ground and the arena's walls by formula, after backdrop.rs and compose.rs. A tile is one
-// rectangle. What a picture's pixels share comes along with it, for software that stands in for a card loads a number for a
-// whole triangle far faster than one for each pixel; a rectangle for each row, so that rows need no second reckoning, was ten
-// times slower there.
+// The background of all objects: sky, ground and the arena's walls, computed analytically as in backdrop.rs and compose.rs.
+// Each tile is one rectangle. Values shared by all pixels of an image are passed as flat vertex outputs, because software
+// emulation of a GPU reads a value once per triangle far faster than once per pixel. One rectangle per row, which would avoid
+// recomputing the values of rows, was ten times slower there.
 
 struct Whole {
     @builtin(position) position: vec4f,
-    // The middle in pixels of the atlas; metres per pixel at 1 m; the camera's height.
+    // The image's middle in pixels of the atlas; metres per pixel at 1 m; the camera's height.
     @location(0) @interpolate(flat, either) middle_step_height: vec4f,
     @location(1) @interpolate(flat, either) place_right: vec4f,
     @location(2) @interpolate(flat, either) forward_up: vec4f,
-    // How much rays rise: ahead, and for each metre up; metres up to the walls' upper edge; 1 where there are walls.
+    // Rise of rays: straight ahead, and per metre up; height of the walls' upper edge above the camera; 1 if there are walls.
     @location(3) @interpolate(flat, either) rise_walls: vec4f,
     @location(4) @interpolate(flat, either) wall_base: vec4f,
     @location(5) @interpolate(flat, either) wall_right: vec4f,
     @location(6) @interpolate(flat, either) wall_up: vec4f,
     @location(7) @interpolate(flat, either) wall_pixels: vec4u,
-    // The ground's colour; squares that a pixel covers per square metre of distance.
+    // The ground's colour; number of squares that a pixel covers, divided by the distance squared.
     @location(8) @interpolate(flat, either) ground_blur: vec4f,
-    // The sky's; how far the outermost column is from the middle at 1 m.
+    // The sky's colour at the zenith; offset of the outermost column from the middle, at 1 m.
     @location(9) @interpolate(flat, either) zenith_width: vec4f,
     @location(10) @interpolate(flat, either) horizon: vec3f,
     @location(11) @interpolate(flat, either) number: u32,
@@ -63,7 +63,7 @@ fn sky(whole: Whole, rise: f32) -> vec3f {
     return share * (whole.zenith_width.xyz - whole.horizon) + whole.horizon;
 }
 
-// The ground's colour where a ray meets it, at 1 / this distance, so far to the right and up at 1 m.
+// The ground's colour where a ray meets it: `inverse` is 1 / distance, `offset` the ray's offset to the right and up at 1 m.
 fn ground(whole: Whole, inverse: f32, offset: vec2f) -> vec3f {
     let metres = 1.0 / max(inverse, 1e-6);
     let blur = metres * metres * whole.ground_blur.w;
@@ -95,7 +95,7 @@ fn backdrop_fragment(whole: Whole) -> Behind {
     let edge = max(rise, 0.0) / whole.rise_walls.z;
     if whole.rise_walls.w > 0.0 && nearest >= edge && nearest > inverse {
         inverse = nearest;
-        // The first of the nearest.
+        // Ties go to the first wall.
         word = select(whole.wall_pixels.w, whole.wall_pixels.z, walls.z == nearest);
         word = select(word, whole.wall_pixels.y, walls.y == nearest);
         word = select(word, whole.wall_pixels.x, walls.x == nearest);

@@ -1,10 +1,10 @@
-// Triangles of objects and of walls that are not the arena's own: projected, lit and labelled corner by corner, after
-// view.rs, raster.rs and, for light, shade.rs, which has the constants. One instance is one object of one tile.
+// Triangles of objects and of walls other than the arena's own: projected, lit and labelled per corner, as in view.rs,
+// raster.rs and, for light, shade.rs, which defines the constants. An instance is one object in one tile.
 
 struct Corner {
     @location(0) point: vec3f,
     @location(1) normal: vec3f,
-    // Colour, and 1 where the object's own colour takes its place.
+    // Colour, and 1 if the object's own colour replaces it.
     @location(2) paint: vec4f,
 }
 
@@ -42,7 +42,7 @@ fn objects_vertex(corner: Corner, instance: Instance) -> Seen {
     let number = instance.numbers.x;
     let place = tiles[number].place;
     let light = tiles[number].tint_ambient;
-    // Pixel centres have whole coordinates in view.rs, and lie half a pixel further on here.
+    // Pixel centres have integer coordinates in view.rs; here they are half a pixel further.
     let depth = along(instance.depth, corner.point);
     let column = along(instance.column, corner.point) + 0.5 * depth;
     let row = along(instance.row, corner.point) + 0.5 * depth;

@@ -1,27 +1,27 @@
-// What every shader shares: the pictures of a pass, and how colours become bytes. Written after shade.rs and compose.rs;
-// the constants come from there.
+// Shared by all shaders: the images of a pass, and the conversion of colours to bytes. Follows shade.rs and compose.rs, which
+// define the constants.
 
-// One picture of a pass, as `tile.rs` writes it. Angles and metres are those of view.rs.
+// One image of a pass, as written by `tile.rs`. Units are those of view.rs.
 struct Tile {
-    // Its left upper corner in the atlas, then its width and height, all in pixels.
+    // Its upper left corner in the atlas, then its width and height, all in pixels.
     place: vec4f,
-    // The camera's axes. With them: metres per pixel at 1 m; the camera's height; metres up to the walls' upper edge.
+    // The camera's axes. Fourth components: metres per pixel at 1 m; the camera's height; height of the walls' upper edge above it.
     forward_step: vec4f,
     right_height: vec4f,
     up_above: vec4f,
-    // Where the camera is, and 1 where the arena's walls are drawn by formula.
+    // The camera's position, and 1 if the arena's walls are computed analytically.
     position_walls: vec4f,
     wall_base: vec4f,
     wall_right: vec4f,
     wall_up: vec4f,
     wall_pixels: vec4u,
-    // Levels 0 to 255 and above.
+    // Colour levels, 0 to 255 and above.
     ground: vec4f,
     zenith: vec4f,
     horizon: vec4f,
-    // The light's colour, and the share of it that comes from everywhere.
+    // The light's colour, and the share of ambient light.
     tint_ambient: vec4f,
-    // Colour of fog, and the distance at which half of what is seen is fog; 0 where there is none.
+    // Colour of fog, and the distance at which fog has half its effect; 0 without fog.
     fog: vec4f,
 }
 
@@ -30,7 +30,7 @@ struct Atlas {
     scale: vec2f,
 }
 
-// What a fragment may write: bytes of colour and label; the item's number.
+// The output of a fragment: bytes of colour and label; the item's number.
 struct Pixel {
     @location(0) word: u32,
     @location(1) item: u32,
@@ -47,7 +47,7 @@ fn packed_pixel(levels: vec3f, label: u32) -> u32 {
     return (label << 24u) | (bytes.z << 16u) | (bytes.y << 8u) | bytes.x;
 }
 
-// A word's colours turned into the fog's with distance; the sky stays.
+// Blends a word's colour into the fog with distance; the sky stays unchanged.
 fn in_fog(word: u32, inverse: f32, tile: u32) -> u32 {
     let fog = tiles[tile].fog;
     if fog.w <= 0.0 || inverse <= 0.0 {
