@@ -25,7 +25,7 @@ fn grows_by(bytes: usize) {
 
 #[expect(
     unsafe_code,
-    reason = "an allocator cannot be written without; this one adds to a number and asks the system"
+    reason = "an allocator needs unsafe code; this one counts and then calls the system's"
 )]
 // SAFETY: every call is passed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {

@@ -20,7 +20,7 @@ fn start() -> (Environment, Channels) {
 
 fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) -> Vec<Outgoing> {
     let action = message["action"].as_str().unwrap_or_default();
-    let channel = Channel::for_action(action).expect("the requested buffers exist");
+    let channel = Channel::for_action(action).expect("a channel accepts the action");
     channels
         .receive(environment, channel, &message.to_string(), NOW)
         .messages
@@ -63,7 +63,7 @@ fn every_message_of_the_original_is_understood() {
     assert_eq!(
         environment.find("thing"),
         Some(3),
-        "the new object stands behind the three of the world"
+        "the new object comes after the world's three"
     );
     assert!(channels.is_active(Category::Agent) && !channels.is_active(Category::Academy));
     let step = environment
@@ -195,7 +195,7 @@ fn hostile_observer_requests_change_nothing() {
             r#", "payload": { "state": ["objects", "object"] }"#,
             "did you mean \"objects\"?",
         ),
-        (r#", "state": "objects""#, "found a text"),
+        (r#", "state": "objects""#, "found a string"),
     ] {
         check(
             State,

@@ -123,7 +123,7 @@ fn heap_gives_a_warning_with_place_and_size() {
     assert_eq!(warnings.len(), 1, "only the first body is reported");
     assert!(
         warnings[0].starts_with(
-            "/objects/0/coordinates: found 999 bodies in the place of one that can be pushed, expected at most 256"
+            "/objects/0/coordinates: found 999 bodies that overlap a pushable object, expected at most 256"
         ),
         "{warnings:?}"
     );

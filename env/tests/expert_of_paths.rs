@@ -1,4 +1,5 @@
-//! The expert's paths: to the nearest of equal zones, around what covers part of a zone, forwards where nothing is in the way.
+//! The expert's paths: to the nearest of equal zones, around objects that cover part of a zone, and always forwards on open
+//! ground.
 
 use driftworld_spec::{Color, EndCondition, Object, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
@@ -44,8 +45,8 @@ proptest! {
 
     /// In any order, and with a wall that is nearer in a straight line than around it.
     #[test]
-    fn another_equal_zone_makes_no_way_longer(a in place(), b in place()) {
-        let walk = |to: &[[f64; 2]]| length(hall(to.iter().map(|at| exit(*at, 1.0)).collect())).expect("no way is shut");
+    fn another_equal_zone_makes_no_path_longer(a in place(), b in place()) {
+        let walk = |to: &[[f64; 2]]| length(hall(to.iter().map(|at| exit(*at, 1.0)).collect())).expect("no path is blocked");
         let (alone, both) = ([walk(&[a]), walk(&[b])], walk(&[a, b]));
         prop_assert_eq!(both, walk(&[b, a]));
         // Paths over cells are up to 8 % longer than straight ones.
@@ -53,7 +54,7 @@ proptest! {
     }
 
     #[test]
-    fn zone_that_a_rock_covers_in_part_is_entered(at in place(), offset in [-1.0..1.0_f64, -1.0..1.0]) {
+    fn zone_partly_covered_by_a_rock_is_entered(at in place(), offset in [-1.0..1.0_f64, -1.0..1.0]) {
         let mut world = hall(vec![exit(at, 1.8)]);
         let mut rock = Object::new("cube", [at[0] + offset[0], at[1] + offset[1]]);
         rock.solid = true;
@@ -80,9 +81,9 @@ proptest! {
         prop_assert!(length(world).is_some());
     }
 
-    /// However long the way is, it never backs up in its first 1,000 steps.
+    /// However long its path is, the expert never backs up in the first 1,000 steps.
     #[test]
-    fn expert_that_gets_ahead_only_gets_nearer(speed in 1.0..8.0_f64, x in -0.5..0.5_f64) {
+    fn expert_on_open_ground_never_backs_up(speed in 1.0..8.0_f64, x in -0.5..0.5_f64) {
         let mut world = WorldDraft::with_objects(vec![Object::new("cube", [x, 40.0])]);
         world.objects[0].tag = Some("goal".to_owned());
         world.rules.success = vec![EndCondition::Touch("goal".to_owned())];

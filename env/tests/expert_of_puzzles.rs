@@ -298,8 +298,8 @@ proptest! {
         fails in any::<bool>(),
         is_discrete in any::<bool>(),
     ) {
-        let came_of_it = carried_past_lava([ford, key_x, thickness], fails, is_discrete);
-        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Delivered)), "no zone was entered");
+        let result = carried_past_lava([ford, key_x, thickness], fails, is_discrete);
+        prop_assert_eq!(result, (0.0, Some(EndedBy::Delivered)), "no zone was entered");
     }
 
     /// If the only path leads through a zone that costs, it is taken; through one that fails, never.
@@ -311,8 +311,8 @@ proptest! {
     ) {
         let (paid, ended_by) = carried_past_lava([100.0, key_x, thickness], false, is_discrete);
         prop_assert!(ended_by == Some(EndedBy::Delivered) && paid <= -40.0, "{:?} {}", ended_by, paid);
-        let came_of_it = carried_past_lava([100.0, key_x, thickness], true, is_discrete);
-        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "an enclosed agent does not cross the lava");
+        let result = carried_past_lava([100.0, key_x, thickness], true, is_discrete);
+        prop_assert_eq!(result, (0.0, Some(EndedBy::Steps)), "an enclosed agent does not cross the lava");
     }
 
     /// If the only goal is a zone behind a door, the expert goes there and stays.

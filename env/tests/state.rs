@@ -261,7 +261,7 @@ fn counters_at_their_limits_do_not_overflow() {
     let mut environment = start(World::from_json("end", text).expect("the counters are in range"));
     environment
         .step(Action::Continuous([0.0; 3]))
-        .expect("no limit of steps is set");
+        .expect("no step limit is set");
     assert_eq!(environment.num_steps(), u32::MAX);
 }
 

@@ -69,7 +69,7 @@ proptest! {
         agent.agent_width = width;
         agent.max_linear_speed = speed;
         agent.time_step = seconds;
-        // In front of the wall, driven into it: its outer side is 0.12 m from its centre line.
+        // The agent starts in front of the wall and is driven into it. The wall's sides are 0.12 m from its centre line.
         let distance = 0.12 + width / 2.0 + 0.01;
         let sign = angle.signum();
         let behind = sign * length * 0.4;

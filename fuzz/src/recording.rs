@@ -225,7 +225,7 @@ fn check_in_log(file: &[u8]) {
         }
         Err(error) => {
             refusal::message(&error.to_string());
-            // The test's own file, not by driftworld-files: no user names it.
+            // Read without driftworld-files, because the test itself created the file.
             let left = fs::read(&path).expect("the file exists");
             assert_eq!(left, file, "a refused file stays unchanged");
         }

@@ -20,24 +20,24 @@ Usage: driftworld-unity [OPTIONS] [UNITY'S OPTIONS]
 A client that was given this file as its executable starts it by itself:
   cp driftworld-unity ~/l2explorer/l2explorer.x86_64
   export L2EXPLORER_APP=~/l2explorer/l2explorer.x86_64 L2EXPLORER_WORKER_ID=0
-To meet a client that waits by itself (`file_name=None`, the \"editor mode\"), start it by hand, without options.
+For a client that waits for a connection (`file_name=None`, the \"editor mode\"), start it by hand, without options.
 
 Options:
   --mlagents-port PORT    where the client listens [default: 5004, the port of the editor mode]
-  --host NAME             the client's machine [default: 127.0.0.1]; what is said is not encrypted
+  --host NAME             the client's machine [default: 127.0.0.1]; the connection is not encrypted
   --wait SECONDS          how long to look for a client [default: 60]
   --world FILE            the world until the client resets to one of its own: ours, or a reset file of L2Explorer
   --maps FILE             layouts of predefined maps in place of the built-in ones
-  --assets LIB            a library of models that worlds may use beside the built-in ones, made by `driftworld assets pack`;
-                          may be given again, the last one holds where two have the same model
-  --screenshots DIR       the folder that screenshots are written into, and nowhere else [default: screenshots]
-  --record FILE           keep the world and the actions of every episode, for `driftworld replay`; goes on in a file that is there
+  --assets LIB            a library of models, made by `driftworld assets pack`, that worlds may use besides the built-in ones;
+                          may be repeated: if two libraries have the same model, the later one is used
+  --screenshots DIR       the only folder into which screenshots are written [default: screenshots]
+  --record FILE           keep the world and the actions of every episode, for `driftworld replay`; appends to an existing file
   --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are twenty times as long
-  -logFile [FILE]         where to write what is said on the terminal otherwise; without FILE or with - the terminal
+  -logFile [FILE]         a file for the messages that otherwise go to the terminal; without FILE, or with -, the terminal
   --help, --version
 
--nographics, -batchmode and what else Unity knows are accepted and mean nothing: no display and no graphics card are needed.
-Exit codes: 0 the client is done, 1 an error, 2 arguments that cannot be, 3 no client came.";
+-nographics, -batchmode and Unity's other options are accepted and ignored: no display or graphics card is needed.
+Exit codes: 0 the client is done, 1 an error, 2 invalid arguments, 3 no client found.";
 
 /// The request in the arguments.
 #[derive(Clone, Debug, PartialEq)]
@@ -185,7 +185,7 @@ impl Request {
                     if !UNITY_OPTIONS.contains(&other.to_lowercase().as_str()) {
                         let advice =
                             suggestion(other).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-                        remarks.push(format!("{other:?} is not known here and ignored{advice}"));
+                        remarks.push(format!("{other:?} is not known here and is ignored{advice}"));
                     }
                 }
                 other if !after_foreign => remarks.push(format!("{other:?} belongs to no option and is ignored")),
@@ -281,12 +281,12 @@ mod tests {
         assert_eq!(
             remarks,
             [
-                "\"-popupwindow\" is not known here and ignored",
-                "\"--mlagents-scene-name\" is not known here and ignored",
-                "\"--screenshot\" is not known here and ignored; did you mean --screenshots?",
+                "\"-popupwindow\" is not known here and is ignored",
+                "\"--mlagents-scene-name\" is not known here and is ignored",
+                "\"--screenshot\" is not known here and is ignored; did you mean --screenshots?",
                 "\"c\" belongs to no option and is ignored",
                 "\"d\" belongs to no option and is ignored",
-                "\"--port\" is not known here and ignored; did you mean --mlagents-port?",
+                "\"--port\" is not known here and is ignored; did you mean --mlagents-port?",
             ]
         );
     }

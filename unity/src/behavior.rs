@@ -13,7 +13,7 @@ pub const BEHAVIOR: &str = "L2Explorer?team=0";
 pub(crate) const ACTION_LENGTH: usize = 3;
 
 /// Description of the action in worlds with an action table.
-const ROW: &str = "a row of the world's table of actions";
+const ROW: &str = "a row of the world's action table";
 
 /// The behaviour for a client: three continuous numbers, or one discrete number, the row of the world's action table.
 pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
@@ -48,15 +48,15 @@ pub(crate) fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
             interact(agent, "interact above 0.5"),
         ],
         (ActionModel::ByVelocity, true) => [
-            "speed as a share of the largest, -1 to 1",
-            "turn rate as a share of the largest, right positive, -1 to 1",
+            "speed as a fraction of the maximum, -1 to 1",
+            "turn rate as a fraction of the maximum, right positive, -1 to 1",
             interact(agent, "interact above 0"),
         ],
         (ActionModel::ByWaypoint, false) => ["x in m", "y in m", "turn rate in degrees/s, right positive"],
         (ActionModel::ByWaypoint, true) => [
-            "x as a share of half the arena, -1 to 1",
-            "y as a share of half the arena, -1 to 1",
-            "turn rate as a share of the largest, right positive, -1 to 1",
+            "x as a fraction of half the arena, -1 to 1",
+            "y as a fraction of half the arena, -1 to 1",
+            "turn rate as a fraction of the maximum, right positive, -1 to 1",
         ],
         (ActionModel::OnRails | ActionModel::None, _) => ["ignored"; ACTION_LENGTH],
     }
@@ -99,7 +99,7 @@ mod tests {
         agent.interact = false;
         assert_eq!(words(&agent)[2], "ignored");
         agent.actions = ActionSpace::Normalized;
-        assert_eq!(words(&agent)[0], "speed as a share of the largest, -1 to 1");
+        assert_eq!(words(&agent)[0], "speed as a fraction of the maximum, -1 to 1");
         agent.action_model = ActionModel::OnRails;
         assert_eq!(words(&agent), ["ignored"; 3]);
     }

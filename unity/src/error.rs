@@ -54,7 +54,7 @@ pub enum UnityError {
     Document(#[from] SpecError),
     /// Nothing listens at the client's address.
     #[error(
-        "{address}: no client within {seconds} s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)",
+        "{address}: no client within {seconds} s; start it first, or name its port with --mlagents-port (5004 in editor mode, else 5005 + worker id)",
         address = one_line(address)
     )]
     NoClient {
@@ -67,7 +67,7 @@ pub enum UnityError {
     #[error("{}: expected the name or address of a machine, such as 127.0.0.1", one_line(.0))]
     NoAddress(String),
     /// The server does not speak the protocol.
-    #[error("{address}: what listens there does not answer as an ML-Agents client does: {reason}", address = one_line(address), reason = one_line(reason))]
+    #[error("{address}: the server there does not answer like an ML-Agents client: {reason}", address = one_line(address), reason = one_line(reason))]
     NotAClient {
         /// Host and port.
         address: String,
@@ -111,7 +111,7 @@ pub enum UnityError {
         expected: usize,
     },
     /// A discrete action is not a row of the world's table.
-    #[error("action: found {found}, expected the number of a row of the world's table of actions, 0 to {last}", found = one_line(found))]
+    #[error("action: found {found}, expected the number of a row of the world's action table, 0 to {last}", found = one_line(found))]
     ActionRow {
         /// The number.
         found: String,
@@ -128,7 +128,7 @@ pub enum UnityError {
     },
     /// An answer is longer than clients accept: its length in bytes.
     #[error(
-        "observation: {0} bytes in a message, of which clients accept {MAX_OUTGOING_BYTES}; reset to a smaller observation_size, or leave out --raw-observations"
+        "observation: found {0} bytes in a message, expected at most {MAX_OUTGOING_BYTES}, which clients accept; reset to a smaller observation_size, or leave out --raw-observations"
     )]
     TooLarge(usize),
     /// An image cannot be encoded: the reason.

@@ -44,7 +44,7 @@ impl RecordingFile {
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
                 return Err(failed(std::io::Error::other(
-                    "another driftworld-unity writes it; name another file",
+                    "another driftworld-unity is writing to it; name another file",
                 )));
             }
             // If the file system does not support locks, continue without one.

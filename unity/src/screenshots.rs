@@ -56,7 +56,7 @@ impl Screenshots {
             return refused("is a folder", "a name for a file");
         }
         if path.is_file() && !path.is_symlink() && !is_png(&path) {
-            return refused("is a file but no picture", "another name");
+            return refused("is a file but not a picture", "another name");
         }
         let mut file = AtomicFile::create_in_place_of_links(&path).map_err(failed)?;
         file.write_all(png).map_err(failed)?;
@@ -159,7 +159,7 @@ mod tests {
         let error = screenshots
             .write("train.py", b"x")
             .expect_err("a program is not a picture");
-        assert!(error.contains("no picture"), "{error}");
+        assert!(error.contains("not a picture"), "{error}");
         assert_eq!(fs::read_to_string(&mine).expect("the file still exists"), "mine");
         fs::create_dir(root.path().join("deep/out/d.png")).expect("the folder can be written");
         let error = screenshots.write("d.png", b"x").expect_err("a folder is not a picture");

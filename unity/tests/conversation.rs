@@ -64,8 +64,8 @@ fn agent(text: &mut String, agent: &AgentInfoProto) -> std::fmt::Result {
     let end = match (agent.done, agent.max_step_reached) {
         (false, false) => "",
         (true, false) => ", over",
-        (true, true) => ", over by the last step",
-        (false, true) => ", cut off without an end",
+        (true, true) => ", truncated",
+        (false, true) => ", truncated but not over",
     };
     writeln!(text, "  agent {id}: reward {reward}{end}")?;
     for seen in &agent.observations {
@@ -188,7 +188,7 @@ fn decoding_drops_only_the_number_of_areas() {
         for (about, mut bytes) in messages(release) {
             let message = UnityMessageProto::decode(bytes.as_slice()).expect("the message is valid");
             let mut kept = message.encode_to_vec();
-            if release != "0.16" && about == "who the client is" {
+            if release != "0.16" && about == "the client's identity" {
                 assert!(bytes.ends_with(&areas), "{release}");
                 bytes.truncate(bytes.len() - areas.len());
                 // The enclosing lengths are shorter by the same amount.

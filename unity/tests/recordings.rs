@@ -181,7 +181,7 @@ fn file_is_locked_against_a_second_program() {
     let first = RecordingFile::open(&path).expect("the file can be created");
     let error = RecordingFile::open(&path).expect_err("the file is already open for writing");
     assert!(
-        error.to_string().contains("another driftworld-unity writes it"),
+        error.to_string().contains("another driftworld-unity is writing to it"),
         "{error}"
     );
     drop(first);

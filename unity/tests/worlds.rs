@@ -122,7 +122,7 @@ fn unknown_rows_and_wrong_lengths_are_refused() {
         };
         session.answer(&input).expect_err("there is no such action").to_string()
     };
-    let expected = "expected the number of a row of the world's table of actions, 0 to 6";
+    let expected = "expected the number of a row of the world's action table, 0 to 6";
     assert_eq!(refused(row(7, true)), format!("action: found 7, {expected}"));
     for (number, identity) in [(-1.0, "-1"), (0.5, "0.5"), (f32::NAN, "NaN")] {
         let action = AgentActionProto {

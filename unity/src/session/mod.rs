@@ -165,7 +165,7 @@ impl Session {
         self.client = Client::new(identity)?;
         if identity.seed != 0 {
             let remark = format!(
-                "seed {}: not used, the chance of a world is its own: the same world and actions give the same episode",
+                "seed {}: not used, because a world has its own random numbers: the same world and actions give the same episode",
                 identity.seed
             );
             self.remarks.make(About::Settings, &remark);
@@ -267,7 +267,7 @@ impl Session {
                 Ok(changed) => world = changed,
                 Err(problem) => {
                     let remark =
-                        format!("environment parameters: left out for a world that they do not suit: {problem}");
+                        format!("environment parameters: left out in a world for which they are invalid: {problem}");
                     self.remarks.make(About::Worlds, &remark);
                 }
             }
@@ -384,7 +384,7 @@ impl Session {
         rl_output.side_channel = self.outbox.take(room);
         let num_dropped = self.outbox.take_num_dropped();
         if num_dropped > 0 {
-            let remark = format!("{num_dropped} messages were left out: they do not fit beside the observations");
+            let remark = format!("{num_dropped} messages were left out: they do not fit next to the observations");
             self.remarks.make_once(About::Refusals, "left out", &remark);
         }
         UnityOutputProto {

@@ -14,7 +14,7 @@ pub(crate) fn engine_setting(bytes: &[u8]) -> Result<(&'static str, String), Str
         }
         1 => {
             let level = payload.int()?;
-            let remark = format!("quality level {level}: ignored, there is one; see supersampling");
+            let remark = format!("quality level {level}: ignored, there is only one; see supersampling");
             ("quality level", remark)
         }
         2 => {

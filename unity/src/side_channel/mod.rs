@@ -80,7 +80,7 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
             bytes = &[];
             let found = rest.len();
             return Some(Err(format!(
-                "found a message that claims {length} bytes, of which there are {found}"
+                "found a message that claims {length} bytes, with {found} left"
             )));
         };
         bytes = rest;
@@ -159,12 +159,9 @@ mod tests {
             assert!(found[0].is_ok());
             assert_eq!(found[1], Err(expected.to_owned()));
         };
-        check(3, "found a message that claims 3 bytes, of which there are 2");
-        check(-1, "found a message that claims -1 bytes, of which there are 2");
-        check(
-            i32::MAX,
-            "found a message that claims 2147483647 bytes, of which there are 2",
-        );
+        check(3, "found a message that claims 3 bytes, with 2 left");
+        check(-1, "found a message that claims -1 bytes, with 2 left");
+        check(i32::MAX, "found a message that claims 2147483647 bytes, with 2 left");
         let short: Vec<_> = records(&[1, 2, 3]).collect();
         assert_eq!(short, [Err("found 3 bytes, expected at least 20".to_owned())]);
     }

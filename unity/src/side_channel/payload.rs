@@ -27,9 +27,7 @@ impl<'a> Payload<'a> {
             .and_then(|length| self.0.split_at_checked(length));
         let Some((text, rest)) = split else {
             let found = self.0.len();
-            return Err(format!(
-                "found a text that claims {length} bytes, of which there are {found}"
-            ));
+            return Err(format!("found a string that claims {length} bytes, with {found} left"));
         };
         self.0 = rest;
         std::str::from_utf8(text).map_err(|error| format!("found a string that is not UTF-8: {error}"))
@@ -69,11 +67,8 @@ mod tests {
                 .expect_err("the payload contains no valid text");
             assert!(error.starts_with(expected), "{error}");
         };
-        check(
-            &[5, 0, 0, 0, b'a'],
-            "found a text that claims 5 bytes, of which there are 1",
-        );
-        check(&[255, 255, 255, 255, b'a'], "found a text that claims -1 bytes");
+        check(&[5, 0, 0, 0, b'a'], "found a string that claims 5 bytes, with 1 left");
+        check(&[255, 255, 255, 255, b'a'], "found a string that claims -1 bytes");
         check(&[1, 0, 0, 0, 0xff], "found a string that is not UTF-8");
         check(&[1, 0], "found 2 bytes, expected 4");
     }

@@ -22,7 +22,7 @@ pub(crate) fn environment_parameter(bytes: &[u8]) -> Result<Setting, String> {
             key,
         }),
         1 => Err(format!(
-            "{key:?}: found a sampler, expected a number: what is drawn at each reset is drawn by the client, or by a task spec"
+            "{key:?}: found a sampler, expected a number: draw values for each reset in the client, or with a task spec"
         )),
         other => Err(format!("{key:?}: found type {other}, expected 0, a number")),
     }

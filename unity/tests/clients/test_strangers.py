@@ -103,7 +103,7 @@ def test_a_server_that_is_not_a_client_is_reported(launcher: Launcher, stranger:
     with stranger() as port:  # type: ignore[operator]
         code, errors = code_and_errors(launcher.run("--mlagents-port", str(port), "--wait", "1"))
     assert code == 1, errors
-    assert f"127.0.0.1:{port}: what listens there does not answer as an ML-Agents client does: " in errors
+    assert f"127.0.0.1:{port}: the server there does not answer like an ML-Agents client: " in errors
     assert expected in errors and errors.count("\n") == 1
 
 

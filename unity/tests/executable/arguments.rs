@@ -111,8 +111,8 @@ fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
     assert_eq!(
         lines[..2],
         [
-            "driftworld-unity: \"-adapter\" is not known here and ignored",
-            "driftworld-unity: \"--raw-observation\" is not known here and ignored; did you mean --raw-observations?",
+            "driftworld-unity: \"-adapter\" is not known here and is ignored",
+            "driftworld-unity: \"--raw-observation\" is not known here and is ignored; did you mean --raw-observations?",
         ]
     );
     // Follow the advice in the message.
@@ -293,7 +293,10 @@ fn remarks_are_appended_to_the_log_file() {
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(
         lines[..2],
-        ["before", "driftworld-unity: \"-adapter\" is not known here and ignored"]
+        [
+            "before",
+            "driftworld-unity: \"-adapter\" is not known here and is ignored"
+        ]
     );
     assert!(
         lines[2].starts_with("driftworld-unity: a client at 127.0.0.1:"),

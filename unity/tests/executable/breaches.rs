@@ -173,7 +173,7 @@ fn too_large_observations_are_refused_with_helpful_advice() {
     assert_eq!(ended.code, Some(1), "{ended:?}");
     let last_line = ended.stderr.lines().last().unwrap_or_default();
     let text = last_line.strip_prefix("driftworld-unity: ").unwrap_or_default();
-    assert!(text.starts_with("observation: 94") && text.contains(" bytes in a message, of which clients accept 4194304; reset to a smaller observation_size, or leave out --raw-observations"), "{ended:?}");
+    assert!(text.starts_with("observation: found 94") && text.contains(" bytes in a message, expected at most 4194304, which clients accept; reset to a smaller observation_size, or leave out --raw-observations"), "{ended:?}");
     let reply = client.calls().pop().and_then(|call| call.header);
     assert_eq!(reply.expect("the last call has a header").message, text);
 

@@ -17,7 +17,7 @@ fn run(listener: &TcpListener, arguments: &[&str]) -> Executable {
 
 fn assert_no_client(ended: &Ended, reason: &str) {
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    let expected = "what listens there does not answer as an ML-Agents client does: ";
+    let expected = "the server there does not answer like an ML-Agents client: ";
     let (_, found) = ended.stderr.split_once(expected).unwrap_or_else(|| panic!("{ended:?}"));
     assert!(found.contains(reason), "{ended:?}");
 }
@@ -32,7 +32,7 @@ fn waiting_without_a_server_times_out() {
     assert_eq!(
         ended.stderr,
         format!(
-            "driftworld-unity: 127.0.0.1:{port}: no client within 0.2 s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)\n"
+            "driftworld-unity: 127.0.0.1:{port}: no client within 0.2 s; start it first, or name its port with --mlagents-port (5004 in editor mode, else 5005 + worker id)\n"
         )
     );
 }

@@ -58,7 +58,7 @@ WORLD = {
 }
 
 recorded = []
-about = "who the client is"
+about = "the client's identity"
 
 
 class Recorder(rpc.UnityToExternalServicerImplementation):
@@ -116,16 +116,16 @@ def main(executable):
     step("a step forward", [5, 0, 0])
     step("a step forward, to the right", [5, 45, 0])
     worlds.say(2, action="object_create", unique_name="late", payload={"class": "rock", "coordinates": [-3, 6]})
-    step("a step, with an object that is put into the world", [5, -45, 0])
+    step("a step, with a new object", [5, -45, 0])
     states.say(3, action="get_observers")
     states.say(4, action="set_active_observers", payload={"state": ["agent_params", "game_mode"]})
     debug.say(5, action="set_debug_categories", payload=[{"category": "academy", "active": True}])
-    step("a step, with questions for the state", [0, 90, 1])
+    step("a step, with requests for the state", [0, 90, 1])
     debug.say(6, action="save_screenshot", payload={"filename": "/tmp/view.png", "upscale_factor": 2})
     step("a step, with a screenshot", [0, 0, 0])
     worlds.say(7, action="object_destroy", payload={})
     worlds.say(8, action="object_create", payload={"class": "rock", "coordinates": [1000, 6], "name": "Bär"})
-    step("a step, with an unknown action and an object that stands nowhere", [20, 400, 0])
+    step("a step, with an unknown action and an object outside the world", [20, 400, 0])
     step("the last step but one", [0, 0, 0])
     step("the last step", [0, 0, 0])
     step("the first step of the next episode", [5, 0, 0])
