@@ -72,7 +72,7 @@ const names = readdirSync(networks).filter((name) => name.endsWith(".safetensors
 for (const name of names) cpSync(join(networks, name), join(out, "networks", name));
 writeFileSync(join(out, "networks", "index.json"), JSON.stringify(names.map((name) => basename(name, ".safetensors"))));
 
-console.log(`in all               ${sum} bytes by brotli, at most ${MAX_BYTES}; networks beside it: ${names.join(", ")}`);
+console.log(`in all               ${sum} bytes by brotli, at most ${MAX_BYTES}; separate networks: ${names.join(", ")}`);
 if (sum > MAX_BYTES) {
   console.error(`build.mjs: found ${sum} bytes by brotli, expected at most ${MAX_BYTES}; make the page or the simulator smaller`);
   process.exit(1);

@@ -466,7 +466,7 @@ export interface Engine {
   open(request: WorldRequest, options?: OpenOptions): Promise<Episode>;
   /** Runs a whole episode of an agent, for at most this number of steps (1000 if absent). */
   run(request: WorldRequest, agent: Agent, steps?: number): Promise<Outcome>;
-  /** The first world from `request.index` on in which the agent does not succeed; null if it succeeds in all of them. */
+  /** The first world, starting at `request.index`, in which the agent does not succeed; null if it succeeds in all of them. */
   findFailure(request: WorldRequest, agent: Agent, options?: { worlds?: number; steps?: number }): Promise<Outcome | null>;
 
   /** The names of measures. */
@@ -562,7 +562,7 @@ class WorkerEngine implements Engine {
     this.running = null;
     this.waiting = [];
     running?.reject(reason);
-    const others = reason.code === "engine/stopped" ? reason : new EngineError("engine/lost", "a call before this one ended the simulator; ask again");
+    const others = reason.code === "engine/stopped" ? reason : new EngineError("engine/lost", "an earlier call ended the simulator; try again");
     for (const call of waiting) call.reject(others);
     if (running) this.onbusy?.(false);
   }
@@ -596,7 +596,7 @@ class WorkerEngine implements Engine {
       () => {
         if (this.running !== call) return;
         this.timer = setTimeout(
-          () => this.end(new EngineError("engine/timeout", `it took more than ${this.limit / 1000} s and was ended; ask for less`)),
+          () => this.end(new EngineError("engine/timeout", `it took more than ${this.limit / 1000} s and was stopped; request less`)),
           this.limit,
         );
         const request: WorkerRequest = { id: call.id, call: call.call, ...(call.bytes ? { bytes: call.bytes } : {}) };

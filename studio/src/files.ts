@@ -8,7 +8,7 @@ const MAX_FILES = 20_000;
 
 async function readAll(files: { path: string; file: File }[]): Promise<DroppedFile[]> {
   const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
-  if (!files.length) throw new EngineError("page/no-files", "nothing was dropped that can be read: drop the folder of a log");
+  if (!files.length) throw new EngineError("page/no-files", "found no readable files, expected the folder of a log");
   if (files.length > MAX_FILES || bytes > MAX_BYTES) {
     const found = `found ${files.length} files of ${Math.ceil(bytes / 1e6)} MB`;
     throw new EngineError("page/too-much", `folder: ${found}, expected at most ${MAX_FILES} files of 268 MB; drop one log`);

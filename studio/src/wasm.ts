@@ -37,7 +37,7 @@ export async function start(module: WebAssembly.Module): Promise<Caller> {
   };
 }
 
-/** Loads the module beside the page: the brotli file if the browser can decompress it, else the gzip file. The server needs no configuration. */
+/** Loads the module from the page's folder: the brotli file if the browser can decompress it, else the gzip file. The server needs no configuration. */
 export async function load(base: string): Promise<WebAssembly.Module> {
   const [name, decompressor] = pickCompression();
   const reply = await fetch(new URL(name, base));

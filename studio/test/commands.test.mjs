@@ -23,7 +23,7 @@ const own = { task: "my_maze.json", variant: "wide", seed: 0, index: 0 };
 const walk = [[2.5, -45, 0], [2.5, -45, 0], [0, 0.1, 1]];
 /** Each recipe with a file that it writes, or a text that it prints. */
 const RECIPES = {
-  "play is asked of a terminal": [commands.play(built), { command: /terminal/, fails: true }],
+  "play asks for a terminal": [commands.play(built), { command: /terminal/, fails: true }],
   "the planner is filmed": [commands.film(own, "onrails"), { file: "film.gif" }],
   "a network is filmed": [commands.film({ ...built, task: "obstacle_course", variant: "", index: 0 }, { network }), { file: "film.gif" }],
   "a world is drawn": [commands.sample(own), { file: "world.json" }],

@@ -82,7 +82,7 @@ function sealed(format, unpacked) {
 
 /** The messages about links: without bytes and offsets, which mean nothing to a person who copied one. */
 const MESSAGES = {
-  "link/damaged": /^this link is cut or was changed; copy all of it$/,
+  "link/damaged": /^this link is incomplete or was changed; copy all of it$/,
   "link/version": /^this link was made by another version of Driftworld, or was changed; |^link: found .* made by Driftworld /,
 };
 

@@ -63,7 +63,7 @@ async function tabTo(page, name) {
     if (matches(await focused(page))) return;
     await page.keyboard.press("Tab");
   }
-  assert.fail(`Tab never comes to ${name}`);
+  assert.fail(`Tab never reaches ${name}`);
 }
 
 /** Chooses an entry of a list by typing its first letters. */
@@ -137,7 +137,7 @@ task("02 play: walk, and begin again", "#/play/find_objects?variant=blue", async
   await walk(page, "You", 5);
 });
 
-task("03 planner: it plays beside", "#/play/maze?variant=small", async (page) => {
+task("03 planner: it plays beside you", "#/play/maze?variant=small", async (page) => {
   await page.waitForSelector(".seat");
   await tabTo(page, "Planner");
   await page.keyboard.press("Enter");
@@ -289,7 +289,7 @@ task("10 replay: a log on a timeline", "#/replay", async (page) => {
   });
 });
 
-task("11 mouse: a rock is put on the map, and taken away", "#/author", async (page) => {
+task("11 mouse: a rock is put on the map and removed", "#/author", async (page) => {
   await page.waitForSelector(".editor");
   await choose(page, "New from", "a park");
   await choose(page, "A click on the map", "adds");
@@ -338,7 +338,7 @@ task("12 draft: completion, and an edited task that Back does not replace", "#/a
   assert.equal(await page.evaluate(() => localStorage.getItem("driftworld.draft")), edited);
 });
 
-task("13 measures: what counts for several elements is one part, and some measures have none", "#/compare/maze?a=medium&b=tiny", async (page) => {
+task("13 measures: a part that counts for several elements is listed once, and some measures have no parts", "#/compare/maze?a=medium&b=tiny", async (page) => {
   const says = (pattern) => until(page, (source) => new RegExp(source).test(document.querySelector('section[aria-label="Distance"]')?.innerText), pattern.source);
   await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0\s%/);
   // Typed one after the other, the names of two measures would be one word.
@@ -353,7 +353,7 @@ task("13 measures: what counts for several elements is one part, and some measur
   await says(/3\.813 apart[^]*The total is the sum of the parts/);
 });
 
-task("14 addresses: what is not there says so", "#/play/nosuch", async (page) => {
+task("14 addresses: unknown names and pages give a message", "#/play/nosuch", async (page) => {
   const says = async (address, sentence) => {
     await page.evaluate((to) => { location.hash = to; }, address);
     await until(page, (wanted) => document.querySelector(".note")?.innerText.includes(wanted), sentence);
@@ -370,7 +370,7 @@ task("14 addresses: what is not there says so", "#/play/nosuch", async (page) =>
   await until(page, () => document.querySelector(".head").innerText.includes("goal +100 · every step −0.05 · ends after 120 s"));
 });
 
-task("15 link: of an own task, played and edited by who gets it", "#/author", async (page) => {
+task("15 link: a shared task of your own is played and edited by the recipient", "#/author", async (page) => {
   const draft = () => page.evaluate(() => localStorage.getItem("driftworld.draft"));
   const begin = async (template) => {
     await page.waitForSelector(".editor");

@@ -74,7 +74,7 @@ export function Knobs({ parameters, variant, set }: {
   set: (parameter: WrittenParameter, value: Value) => void;
 }) {
   const shown = parameters.filter(({ role, value }) => role === "variant" || (role === "fixed" && ["number", "boolean"].includes(typeof value)));
-  if (!shown.length) return <p class="faint small">Nothing varies in this task. A parameter of the role <code>variant</code> gets a slider or a list here.</p>;
+  if (!shown.length) return <p class="faint small">Nothing varies in this task. A parameter with the role <code>variant</code> gets a slider or a list here.</p>;
   return (
     <div class="knobs">
       {shown.map((parameter) => (

@@ -11,8 +11,8 @@ export function ErrorNote({ error, again, children }: { error: EngineError; agai
   const canRetry = /^(engine|page)\//.test(error.code);
   return (
     <div class={`note ${isStopped ? "warn" : "bad"}`} role="alert">
-      <span>{isStopped ? "Stopped. The simulator starts anew with the next action." : error.message}</span>
-      {again && canRetry && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
+      <span>{isStopped ? "Stopped. The simulator restarts with the next action." : error.message}</span>
+      {again && canRetry && <button type="button" onClick={again}>{isStopped ? "Start again" : "Try again"}</button>}
       {!isStopped && children}
     </div>
   );

@@ -49,7 +49,7 @@ async function drawPreview(text: string, kind: string, variant: string, seed: nu
 async function initialText({ task, options: { file } }: Route): Promise<string | null> {
   if (file && /^[\w-]+\.json$/.test(file)) {
     const reply = await fetch(file);
-    if (!reply.ok) throw new EngineError("page/file", `${file}: found nothing of this name beside the page; open the task with \`driftworld studio\``);
+    if (!reply.ok) throw new EngineError("page/file", `${file}: found no file of this name next to the page; open the task with \`driftworld studio\``);
     return reply.text();
   }
   return task && task !== "draft" ? copyOf((await engine.task(task)).text) : null;
@@ -128,7 +128,7 @@ export function Author({ route }: { route: Route }) {
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
     const effect = path[2] === "default"
-      ? `The default of ${parameter.name} is changed in the text, and so is every variant that sets no value of its own.`
+      ? `The default of ${parameter.name} has changed in the text. This affects every variant that does not set its own value.`
       : "";
     setStatus(edit(path, value, "drag") ? effect : `${variant} belongs to a family: change the family in the text, or choose another variant.`);
   };
@@ -169,7 +169,7 @@ export function Author({ route }: { route: Route }) {
       <div class="head">
         <div>
           <h1>Author</h1>
-          <p>A task is one JSON text. The world beside it is drawn again as you type; <kbd>Ctrl</kbd> <kbd>space</kbd> completes.</p>
+          <p>A task is one JSON text. The world next to it is redrawn as you type; <kbd>Ctrl</kbd> <kbd>space</kbd> completes.</p>
         </div>
         <div class="row end">
           <label class="field">

@@ -248,7 +248,7 @@ export function Compare({ route }: { route: Route }) {
               Differences in their worlds:{" "}
               <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{VERDICTS[elements.value.verdict]}</span>
             </h3>
-            <p class="faint small">For each element, the first difference found, with the left value beside the right one.</p>
+            <p class="faint small">For each element, the first difference found: the left value versus the right one.</p>
             <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{ELEMENTS[witness.element]}:</b> {witness.message}</li>)}</ul>
             {elements.value.measured.length === 0 && <p class="faint small">No element differs in the worlds tested.</p>}
             {elements.value.contradictions.map((text) => <p key={text} class="note bad"><span>{text}</span></p>)}

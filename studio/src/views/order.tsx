@@ -19,7 +19,7 @@ const METHODS: Partial<Record<OrderMethod, string>> = {
   nearest: "Always next: the nearest remaining variant.",
   "two-opt": "A short path found quickly: the one of nearest, with its detours removed.",
   random: "A random order, as a baseline for the others.",
-  given: "As the task lists them, the start first.",
+  given: "In the task's own order, but with the start first.",
 };
 /** Maximum number of variants shown at first: more would take longer, and their names would overlap. */
 const MAX_SHOWN = 12;
@@ -118,7 +118,7 @@ export function Order({ route }: { route: Route }) {
       <div class="head">
         <div>
           <h1>Order</h1>
-          <p>Shows which variants are alike, on a flat map of their distances, and an order in which to go through them.</p>
+          <p>Shows which variants are alike, on a flat map of their distances, and an order in which to visit them.</p>
         </div>
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
@@ -139,7 +139,7 @@ export function Order({ route }: { route: Route }) {
           )}
           {matrix.pending && <p class="faint">Measuring …</p>}
           {matrix.value && <DistanceMap matrix={matrix.value} path={path} selected={selected} pick={(variant) => setPosition(Math.max(0, path.indexOf(variant)))} />}
-          {all.length === 1 && <p class="faint">There is one variant only; an order needs two.</p>}
+          {all.length === 1 && <p class="faint">There is only one variant; an order needs at least two.</p>}
         </section>
         <section class="card pad stack" aria-label="The path">
           <div class="row spread">

@@ -1,7 +1,7 @@
 //! Runs a script of calls natively, and prints for each group a hash of all answers, with which the tests in
 //! `studio/test` compare a browser's answers. `cargo run -p driftworld-wasm --example answers -- SCRIPT`.
 
-#![expect(clippy::print_stdout, reason = "a program of a test")]
+#![expect(clippy::print_stdout, reason = "a program for a test")]
 
 use std::error::Error;
 use std::fs;

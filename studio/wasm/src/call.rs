@@ -70,7 +70,7 @@ pub(crate) enum Call {
     Close {
         episode: u32,
     },
-    /// Hands over a network, passed as bytes.
+    /// Registers a network, passed as bytes.
     Network,
     Run {
         request: WorldRequest,

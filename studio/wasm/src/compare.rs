@@ -35,13 +35,13 @@ fn unit(by: By) -> &'static str {
         By::Parameters => {
             "1 is one parameter moved over its whole range. A parameter that counts for several elements is added once."
         }
-        By::Worlds => "Each part has its own unit, such as 10 m, half a turn, 100 points or black for white.",
-        By::Pictures => "1 is black for white, on objects or around them; the maximum is 2.",
-        By::PicturesWhole => "1 is black for white everywhere.",
+        By::Worlds => "Each part has its own unit, such as 10 m, half a turn, 100 points, or black instead of white.",
+        By::Pictures => "1 is black instead of white, on objects or around them; the maximum is 2.",
+        By::PicturesWhole => "1 is black instead of white everywhere.",
         By::PicturesStructure => "0 means the same edges and textures, 1 the opposite ones.",
         By::Occupancy => "In metres: how far objects would have to move on average, summed over their classes.",
         By::OccupancyJaccard => "1 means that no place is occupied in both.",
-        By::OccupancyHausdorff => "In metres: how far the farthest occupied place is from the nearest of the other.",
+        By::OccupancyHausdorff => "In metres: the largest distance from an occupied place to the nearest of the other.",
         By::OccupancyChamfer => "In metres: the mean distance from occupied places to the nearest one of the other.",
         By::Placements => "1 is 10 m on average, or a class of objects that one of the two lacks; classes are summed.",
         By::Objects => "In metres: the mean distance between matched objects; an unmatched one counts 10 m.",
@@ -51,10 +51,10 @@ fn unit(by: By) -> &'static str {
         }
         By::Rewards => "0 means the same goal, about 0.7 an unrelated one, 1 the opposite one.",
         By::Dynamics => "1 is 100 points, 10 m or half a turn of difference after the same action, on average.",
-        By::DynamicsBisimulation => "1 is 100 points of difference for each action, where both do the same.",
-        By::Behavior => "1 is 100 points that the other's planner earns less per episode than the world's own planner.",
+        By::DynamicsBisimulation => "1 is a difference of 100 points per action, if both do the same.",
+        By::Behavior => "1 means that the other's planner earns 100 points less per episode than the world's own.",
         By::BehaviorSuccess => {
-            "1 is a planner that always succeeds in its own worlds, and never in those of the other."
+            "1 means that a planner always succeeds in its own worlds, and never in those of the other."
         }
     }
 }
@@ -79,7 +79,7 @@ pub(crate) fn elements(
     };
     let measured = variant.measured.iter().map(|measured| {
         let witness = &measured.witness;
-        let message = format!("{}: {} beside {}", witness.what, witness.a, witness.b);
+        let message = format!("{}: {} versus {}", witness.what, witness.a, witness.b);
         json!({ "element": measured.element, "message": message, "witness": witness })
     });
     Ok(json!({

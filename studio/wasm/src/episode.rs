@@ -28,7 +28,7 @@ pub(crate) fn agent(name: AgentName, networks: &Networks) -> Result<Box<dyn Agen
         AgentName::Still => Box::new(StillAgent),
         AgentName::Network(number) => networks.get(number).and_then(Agent::frozen).ok_or_else(|| {
             Fault::request(format!(
-                "agent: found network {number}, expected one that was handed over"
+                "agent: found network {number}, expected one that was passed before"
             ))
         })?,
     };
@@ -101,7 +101,7 @@ impl Episode {
         if self.ended() {
             return Err(Fault::new(
                 "env/ended",
-                "step: found an episode that is over, expected one that goes on; go back or begin anew",
+                "step: found an episode that has ended, expected one in progress; go back or start again",
             ));
         }
         self.environment.check(action)?;

@@ -172,7 +172,7 @@ pub(crate) fn decode(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Faul
         .world(&header.request)
         .map_err(|fault| other_version(&format!("an episode ({}) that was", fault.message)))?;
     if short_hash(&world.hash()) != header.hash {
-        return Err(other_version("a world that is not the one here, in an episode"));
+        return Err(other_version("a different world in an episode"));
     }
     let mut environment = Environment::new(in_style(world, header.looks)?);
     let (mut agents, mut actions) = (AgentStates::default(), Vec::with_capacity(header.steps));
@@ -187,7 +187,7 @@ pub(crate) fn decode(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Faul
         };
         let action = action.ok_or_else(damaged)?;
         if environment.ended() || environment.step(action).is_err() {
-            return Err(other_version("steps that cannot be taken here, in an episode"));
+            return Err(other_version("steps that are impossible here in an episode"));
         }
         actions.push(ActionJson::from(action));
     }
@@ -195,7 +195,7 @@ pub(crate) fn decode(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Faul
         return Err(damaged());
     }
     if bits(environment.episode_return()) != header.total {
-        return Err(other_version("rewards that are not paid here, in an episode"));
+        return Err(other_version("different rewards in an episode"));
     }
     Ok(Link {
         request: header.request,
@@ -238,7 +238,7 @@ fn unpack(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fa
 
 /// One message serves all kinds of damage, because knowing the kind would not help to repair a link.
 fn damaged() -> Fault {
-    Fault::new("link/damaged", "this link is cut or was changed; copy all of it")
+    Fault::new("link/damaged", "this link is incomplete or was changed; copy all of it")
 }
 
 /// The first characters of an untrusted text, for messages.

@@ -30,7 +30,7 @@ impl Log {
         for file in files {
             let (contents, rest) = bytes
                 .split_at_checked(file.length)
-                .ok_or_else(|| Fault::request(format!("{}: found fewer bytes than it has, expected all", file.path)))?;
+                .ok_or_else(|| Fault::request(format!("{}: found fewer bytes than stated, expected all", file.path)))?;
             bytes = rest;
             let name = file.path.rsplit('/').next().unwrap_or_default();
             if name == "data-log.tsv" {

@@ -44,7 +44,7 @@ impl Session {
     pub fn call(&mut self, call: &str, bytes: &[u8]) -> (String, Vec<u8>) {
         let mut pixels = Vec::new();
         let answer = serde_json::from_str(call)
-            .map_err(|error| Fault::request(format!("call: found {error}, expected one that engine.ts makes")))
+            .map_err(|error| Fault::request(format!("call: found {error}, expected one of those in engine.ts")))
             .and_then(|call| self.answer(call, bytes, &mut pixels));
         let answer = match answer {
             Ok(found) => json!({ "ok": found }),
