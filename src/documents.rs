@@ -259,7 +259,7 @@ pub fn check(
             if let Ok((world, _)) = &read {
                 let unknown = world.unknown_classes(classes).into_iter();
                 let unknown =
-                    unknown.map(|odd| format!("{name} ({}): {}; a placeholder stands there", odd.pointer, odd.found));
+                    unknown.map(|odd| format!("{name} ({}): {}; a placeholder is shown", odd.pointer, odd.found));
                 warnings.extend(unknown);
             }
             take_warnings(read, &mut warnings)

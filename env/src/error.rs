@@ -114,7 +114,7 @@ pub enum EnvError {
     },
     /// A world requests different images from the first world of its batch.
     #[error(
-        "environment {env} of the batch: its world asks for {found}, expected {expected} as for environment 0; give the worlds \
+        "environment {env} of the batch: its world requests {found}, expected {expected} as in environment 0; give all worlds \
          of a batch the same agent_params.observation_size and modalities"
     )]
     BatchImages {

@@ -263,7 +263,7 @@ fn start_inside_a_wall_gives_a_warning() {
     );
     assert_eq!(
         warnings[0].to_string(),
-        "/agent_params/coordinates: found a wall, expected free ground; it may be unable to get out"
+        "/agent_params/coordinates: found a wall, expected free ground; it may be stuck"
     );
 }
 

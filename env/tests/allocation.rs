@@ -173,7 +173,7 @@ fn steps_do_not_allocate() {
     });
     let (taken_by_hands, _) = count_allocations(seen.expect("the world is valid"), 1, 600);
     assert_eq!(taken_by_hands, 0, "images of carried objects");
-    // Passing work to another thread allocates one block, and one more for the pool's queue once every 63 times, whatever the
+    // Passing work to another thread allocates one block, and every 63rd time one more for the pool's queue, regardless of the
     // number of environments.
     let (taken_by_two, _) = count_allocations(world(), 2, 300);
     assert!(taken_by_two <= 310, "on two threads: {taken_by_two} in 300 steps");

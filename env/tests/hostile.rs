@@ -1,7 +1,7 @@
 //! Malicious or broken files: each is refused with its own message, within the limits, without a panic.
 //!
-//! The corpus is in `tests/hostile/`: each file with its message beside it. It is generated here; `DRIFTWORLD_UPDATE_HOSTILE=1`
-//! rewrites it. A file that is no longer generated, or differs, fails the test.
+//! The corpus is in `tests/hostile/`: each file, and its message in a file next to it. It is generated here;
+//! `DRIFTWORLD_UPDATE_HOSTILE=1` rewrites it. A file that is no longer generated, or differs, fails the test.
 #![cfg(feature = "gltf")]
 
 use std::collections::BTreeSet;

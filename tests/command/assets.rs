@@ -158,7 +158,7 @@ fn models_are_listed_and_drawn() {
     }
     let drawn = ["render", WORLD, "--view", "rgb", "--size", "64", "-o", output];
     let warned = warnings(&drawn);
-    assert_eq!(warned.matches("a placeholder stands there").count(), 3, "{warned}");
+    assert_eq!(warned.matches("a placeholder is shown").count(), 3, "{warned}");
     let placeholder = std::fs::read(&picture).expect("the picture was written");
     let silent = warnings(&[drawn.as_slice(), &["--assets", text(&library)]].concat());
     assert_eq!(silent, "");

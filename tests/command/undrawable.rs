@@ -221,7 +221,7 @@ fn unknown_model_is_refused_by_every_command_that_trains() {
     let done = output(&mut driftworld_in(here, "validate --l2explorer o.json"));
     let warned = String::from_utf8_lossy(&done.stderr).into_owned();
     assert!(
-        done.status.success() && warned.contains("model \"77\" of class \"tree\"; a placeholder stands there"),
+        done.status.success() && warned.contains("model \"77\" of class \"tree\"; a placeholder is shown"),
         "{warned}"
     );
 }

@@ -32,7 +32,7 @@ fn errors() -> Vec<UnityError> {
             source: driftworld_env::EnvError::Recording {
                 line: 1,
                 found: "another line".to_owned(),
-                expected: "the first line of a file of recordings".to_owned(),
+                expected: "the first line of a recordings file".to_owned(),
             },
         },
         UnityError::Network(io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files")),

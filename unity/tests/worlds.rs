@@ -213,7 +213,7 @@ fn world_without_objects_to_photograph_gives_a_remark_and_runs() {
     let remarks = session.take_remarks();
     assert_eq!(
         remarks,
-        ["collect_images: found no objects, expected some to photograph; the world runs as learn"]
+        ["collect_images: found no objects, expected some to photograph; the world runs as in mode learn"]
     );
     let output = answer(&mut session, CommandProto::Reset, None);
     assert!(!agents(&output)[0].done);
@@ -254,7 +254,7 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
     assert_ne!(placeholder, model);
     assert_eq!(
         remarks_for_one,
-        ["world: /objects/1: class \"dragon\" model \"1\" is not known; a placeholder stands there"]
+        ["world: /objects/1: class \"dragon\" model \"1\" is not known; a placeholder is shown"]
     );
     assert_eq!(remarks_for_both.len(), 2, "{remarks_for_both:?}");
 }

@@ -10,8 +10,8 @@ use crate::sim::{Action, Environment, Step};
 /// A world as an expert of another world believes it to be, synchronised with the state of the true one.
 pub(super) struct Belief {
     environment: Environment,
-    /// For each object about whose effects the expert is wrong, the stimuli that it believes to use up the object; empty for
-    /// other objects.
+    /// For each object whose effects the expert misjudges, the stimuli that it believes to use up the object; empty for other
+    /// objects.
     false_stimuli: Vec<Vec<Stimulus>>,
     /// Whether one of those stimuli has been triggered.
     tried: Vec<bool>,

@@ -134,12 +134,7 @@ impl Message {
                     "token: found a longer string, expected at most {MAX_TOKEN_CHARS} characters"
                 ));
             }
-            Some(other) => {
-                return refuse(format!(
-                    "token: found {}, expected a string such as a UUID",
-                    kind(other)
-                ));
-            }
+            Some(other) => return refuse(format!("token: found {}, expected a string like a UUID", kind(other))),
         };
         let refuse = |text: String| Err((token.clone(), Refusal::new(text)));
         // The original client sends times without a time zone; nothing depends on them.

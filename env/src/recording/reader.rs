@@ -124,13 +124,7 @@ impl<R: BufRead> RecordingReader<R> {
         let actions = stored.actions.unpack(stored.steps).map_err(at_episode)?;
         let ended_by = stored.ended_by.as_deref().map(|word| {
             let parsed = word.parse::<EndedBy>();
-            parsed.map_err(|_| {
-                wrong(
-                    episode.line,
-                    format!("ended_by {word:.40}"),
-                    "a word that this version knows",
-                )
-            })
+            parsed.map_err(|_| wrong(episode.line, format!("ended_by {word:.40}"), "a known cause"))
         });
         let edits = stored.edits.iter().map(|(step, hash)| {
             Ok(Edit {
@@ -241,8 +235,7 @@ impl<R: BufRead> RecordingReader<R> {
         self.offset += line.len() as u64;
         if line.pop() != Some(b'\n') {
             self.is_truncated = true;
-            let advice =
-                "a line ending: the writer was stopped in the middle of this line; the lines before it are intact";
+            let advice = "a line ending: the writer was stopped in this line; earlier lines are intact";
             return Err(wrong(self.line, "the end of the file", advice));
         }
         check_checksum(&line).map_err(|(found, expected)| wrong(self.line, found, expected))?;

@@ -9,7 +9,7 @@ use super::obstacle::Obstacle;
 #[non_exhaustive]
 pub enum Warning {
     /// The class or model is unknown; a placeholder is shown.
-    #[strum(to_string = "/objects/{object}: class {class:?} model {model:?} is not known; a placeholder stands there")]
+    #[strum(to_string = "/objects/{object}: class {class:?} model {model:?} is not known; a placeholder is shown")]
     UnknownAsset {
         /// Index of the object.
         object: usize,
@@ -35,9 +35,7 @@ pub enum Warning {
         enclosure: Enclosure,
     },
     /// The agent starts inside an obstacle; it cannot move until it is moved out.
-    #[strum(
-        to_string = "/agent_params/coordinates: found {obstacle}, expected free ground; it may be unable to get out"
-    )]
+    #[strum(to_string = "/agent_params/coordinates: found {obstacle}, expected free ground; it may be stuck")]
     StartsInside {
         /// The obstacle.
         obstacle: Obstacle,
@@ -67,7 +65,7 @@ pub enum Warning {
     /// The world is meant for photographs of its objects ([`Studio`](crate::Studio)); when stepped, it runs as if it were for
     /// learning.
     #[strum(
-        to_string = "/game_mode: collect_images is for `driftworld photograph` and driftworld-unity; stepped, the world runs as learn"
+        to_string = "/game_mode: collect_images is for `driftworld photograph` and driftworld-unity; when stepped, the world runs as in mode learn"
     )]
     ForPhotographs,
 }

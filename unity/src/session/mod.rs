@@ -289,7 +289,7 @@ impl Session {
         match Album::open(world, self.environment.scene().catalogue()) {
             Ok(album) => self.album = Some(album),
             Err(reason) => {
-                let remark = format!("collect_images: {reason}; the world runs as learn");
+                let remark = format!("collect_images: {reason}; the world runs as in mode learn");
                 self.remarks.make(About::Worlds, &remark);
             }
         }

@@ -131,7 +131,7 @@ mod tests {
                     }
                 }
             }
-            // The cost is final, whatever was asked before.
+            // The cost is final, regardless of earlier queries.
             let mut flood = Flood::default();
             flood.begin(&floor, &starts.iter().map(|start| *start as u32).collect::<Vec<_>>());
             for cell in order.into_iter().map(|number| inside[number]) {

@@ -1,4 +1,4 @@
-//! Plans the expert's way to what pays: around obstacles, through doors, by keys, switches and portable things. The planner
+//! Plans the expert's path to rewards: around obstacles and through doors, with keys, switches and portable things. The planner
 //! knows the map and the rules, but takes only actions that the episode allows.
 //!
 //! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the next subgoal, `subgoal.rs` carries it out, and

@@ -358,7 +358,7 @@ impl<'a> Plan<'a> {
         }
         let subgoal = self.subgoal_at(thing, Act::Activate)?;
         let hands_are_full = self.sim.state.carried().len() >= self.sim.world.agent_params.carry_limit as usize;
-        // Drops what is held only on reaching the thing: it may be needed on the way.
+        // Drops the held thing only on reaching the new one, because it may be needed on the way.
         let hands_can_be_emptied = !hands_are_full || can_interact(self.sim.world);
         hands_can_be_emptied.then_some(subgoal)
     }

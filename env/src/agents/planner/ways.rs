@@ -18,7 +18,7 @@ const BESIDE_OBJECT: f32 = 0.3;
 /// Length of the path, in metres, that is searched for the farthest point to walk straight to.
 const LOOK_AHEAD: f32 = 6.0;
 
-/// Fraction of the distance to an object by which the object may move before the path is computed anew.
+/// Fraction of the distance to an object by which the object may move before the path is recomputed.
 const ASTRAY: f32 = 0.2;
 
 /// How and where to put a thing down.

@@ -12,7 +12,7 @@ pub enum ImportWarning {
     #[strum(to_string = "/animations: left out; models do not move")]
     Animations,
     /// Skins: models with bones keep their rest shape.
-    #[strum(to_string = "/skins: left out; the model keeps its rest pose")]
+    #[strum(to_string = "/skins: left out; the model keeps its rest shape")]
     Skins,
     /// Morph targets: the undeformed shape is drawn.
     #[strum(to_string = "/meshes: morph targets are left out")]
