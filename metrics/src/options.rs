@@ -139,7 +139,7 @@ choice! {
 choice! {
     /// Which definitions the metrics follow where the reference's program departs from its own documentation.
     ///
-    /// Under `published`, task parameters split regimes; saturation uses data that were smoothed once; the last tenth
+    /// Under `published`, task parameters split regimes; saturation uses data smoothed only once; the last tenth
     /// of a regime is computed in integers; if several tasks were learned between two evaluations of another task,
     /// transfer is credited to each of them; and values in files are not rounded.
     #[derive(Default)]

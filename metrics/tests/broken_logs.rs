@@ -95,13 +95,13 @@ fn malformed_table_is_refused_with_file_and_line() {
         HEADER.replace("\treward", "\tscore"),
         "metrics/missing-column",
         "LOG/w/0-train/data-log.tsv:1: found the columns block_num, exp_num, worker_id, block_type, block_subtype, \
-         task_name, task_params, exp_status, timestamp, score, expected also reward",
+         task_name, task_params, exp_status, timestamp, score, expected reward as well",
     );
     check(
         HEADER.replace("exp_num\t", ""),
         "metrics/missing-column",
         "LOG/w/0-train/data-log.tsv:1: found the columns block_num, worker_id, block_type, block_subtype, \
-         task_name, task_params, exp_status, timestamp, reward, expected also exp_num",
+         task_name, task_params, exp_status, timestamp, reward, expected exp_num as well",
     );
     check(
         HEADER.replace("exp_num", "block_num"),
@@ -116,13 +116,13 @@ fn malformed_table_is_refused_with_file_and_line() {
     check(
         format!("{HEADER}{ROW}0\t1\tw\ttra"),
         "metrics/torn-last-line",
-        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
+        "LOG/w/0-train/data-log.tsv:3: found a last line without a line ending, expected complete rows; its writer was interrupted, or an editor omitted the line ending: add one if the line is complete; otherwise delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
     );
     check(
         format!("{HEADER}{ROW}").replace('\n', "\r"),
         "metrics/carriage-returns",
         "LOG/w/0-train/data-log.tsv:1: found lines that end in a lone carriage return, expected LF or CRLF; save the \
-         file with such line ends",
+         file with such line endings",
     );
     check(
         [HEADER.as_bytes(), b"0\t\xff\n"].concat(),

@@ -111,7 +111,7 @@ fn interrupted_log_is_continued_where_it_stopped() {
     let message = |writer: &mut LogWriter, record: &Record| writer.write(record).unwrap_err().to_string();
     assert_eq!(
         message(&mut writer, &record(2, 7, BlockType::Train)),
-        "record of experience 7, block_num: found 2, expected at least 3, the number before it: numbers never decrease"
+        "record of experience 7, block_num: found 2, expected at least 3, the previous number: numbers never decrease"
     );
     assert_eq!(
         message(&mut writer, &record(3, 6, BlockType::Test)),
@@ -138,7 +138,7 @@ fn rows_of_an_experience_are_in_one_block() {
     let mut writer = LogWriter::resume(base.path()).unwrap();
     assert_eq!(
         writer.write(&record(4, 8, BlockType::Test)).unwrap_err().to_string(),
-        "record of experience 8, block_type: found test, expected train, as in the row of this experience before it"
+        "record of experience 8, block_type: found test, expected train, as in the previous row of this experience"
     );
     writer.write(&record(4, 8, BlockType::Train)).unwrap();
     // The next experience may be in a block of a different type.
@@ -240,7 +240,7 @@ fn invalid_records_are_refused_and_nothing_is_written() {
     );
     check(
         record(0, 4, BlockType::Train).with_metric("exp_num", 1.0),
-        "record of experience 4, metrics: found \"exp_num\", expected a name that is not empty and not a standard \
+        "record of experience 4, metrics: found \"exp_num\", expected a non-empty name that is not a standard \
          column's",
     );
     assert_eq!(

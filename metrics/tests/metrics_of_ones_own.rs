@@ -128,7 +128,7 @@ impl Metric for Broken {
 fn taken_names_are_refused_and_errors_are_passed_on() {
     for name in ["", "avg_eval_perf", "num_lx", "task_metrics"] {
         let error = Scorer::new().with(Broken(name)).err().unwrap().to_string();
-        let expected = "a name that is not empty and that no other metric or field of the results has";
+        let expected = "a non-empty name that no other metric or field of the results has";
         assert_eq!(
             error,
             format!("option headline of a metric: found {name:?}, expected {expected}")

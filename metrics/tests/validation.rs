@@ -123,7 +123,7 @@ fn every_fault_is_listed_and_other_rows_are_read() {
              missing one",
             "LOG/w/0-train/data-log.tsv:4: found 3 cells, expected 10 as in the header; is a tab or a quote missing?",
             "LOG/w/0-train/data-log.tsv:5, column exp_status: found \"done\", expected one of complete, incomplete",
-            "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
+            "LOG/w/0-train/data-log.tsv:6: found a last line without a line ending, expected complete rows; its writer was interrupted, or an editor omitted the line ending: add one if the line is complete; otherwise delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
             "LOG/w/1-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ]
     );
@@ -135,7 +135,7 @@ fn every_missing_column_is_named() {
     let header = HEADER.replace("exp_num\t", "").replace("\treward", "\tscore");
     let named = |column: &str| {
         format!(
-            "LOG/w/0-train/data-log.tsv:1: found the columns {}, expected also {column}",
+            "LOG/w/0-train/data-log.tsv:1: found the columns {}, expected {column} as well",
             header.trim_end().replace('\t', ", ")
         )
     };
@@ -165,7 +165,7 @@ fn row_instead_of_the_header_is_reported_briefly() {
     let (problems, _, _) = validate(&[("w/0-train", header)], "1.1");
     assert_eq!(problems.len(), 8, "{problems:?}");
     for problem in problems {
-        assert!(problem.contains("and 881 more, expected also"), "{problem}");
+        assert!(problem.contains("and 881 more, expected "), "{problem}");
         assert!(problem.chars().count() < 600, "{problem}");
     }
 }
@@ -192,7 +192,7 @@ fn decreasing_numbers_are_faults_and_decreasing_time_is_a_warning() {
             "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
              in order of exp_num, block numbers never decrease",
         ],
-        &["LOG/w/0-train/data-log.tsv:2: found a row of another folder, expected it in w/1-train; kept"],
+        &["LOG/w/0-train/data-log.tsv:2: found a row that belongs in another folder, expected it in w/1-train; kept"],
     );
 }
 
@@ -239,7 +239,7 @@ fn files_share_the_columns_of_their_version() {
     );
     assert_eq!(problems, [expected]);
     let version =
-        "LOG/w/0-train/data-log.tsv:1: found the column block_subtype, expected none in a log of format 1.0; it counts";
+        "LOG/w/0-train/data-log.tsv:1: found the column block_subtype, expected none in a log of format 1.0; used as is";
     assert_eq!(warnings, [version]);
     let old = [HEADER, &row(0, 0, "complete")]
         .concat()
@@ -307,12 +307,12 @@ fn unclosed_quote_is_not_a_torn_row() {
     check(
         [HEADER, &open, &row(0, 1, "complete"), &row(0, 2, "complete")].concat(),
         &[
-            "LOG/w/0-train/data-log.tsv:2: found a quote that opens a cell and is never closed, expected another at \
-             the end of the cell; the rows after it were read as part of the cell",
+            "LOG/w/0-train/data-log.tsv:2: found a quote that opens a cell and is never closed, expected a closing \
+             quote at the end of the cell; the rows after it were read as part of the cell",
         ],
         &[],
     );
-    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)";
+    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line ending, expected complete rows; its writer was interrupted, or an editor omitted the line ending: add one if the line is complete; otherwise delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)";
     check(
         [HEADER, &row(0, 0, "complete"), "0\t1\tw\ttrain\twake\t\"a\n"].concat(),
         &[torn],
@@ -349,8 +349,8 @@ fn rows_in_another_workers_or_blocks_folder_are_warned_about() {
     assert_eq!(
         warnings,
         [
-            "LOG/w/1-train/data-log.tsv:3: found a row of another folder, expected it in v/1-train; kept",
-            "LOG/w/7-test/data-log.tsv:2: found a row of another folder, expected it in w/0-train; kept",
+            "LOG/w/1-train/data-log.tsv:3: found a row that belongs in another folder, expected it in v/1-train; kept",
+            "LOG/w/7-test/data-log.tsv:2: found a row that belongs in another folder, expected it in w/0-train; kept",
         ]
     );
 }

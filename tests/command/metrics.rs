@@ -141,8 +141,8 @@ fn experts_are_stored_replaced_and_found() {
     let error = fail_in(folder.path(), 1, "metrics life -s w --ste-data experts");
     assert_eq!(
         error,
-        "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task; take one log \
-         for each task, or compare with an agent that ran the same blocks by --against, with floors and ceilings by --scales\n"
+        "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task; give one log \
+         per task, or compare with an agent that ran the same blocks (--against), or with floors and ceilings (--scales)\n"
     );
 }
 

@@ -59,7 +59,7 @@ pub enum MetricsError {
     )]
     InUse(PathBuf),
 
-    /// The directory of a log disappeared while it was written.
+    /// The directory of a log disappeared while the log was being written.
     #[error(
         "{}: found {found}, expected the directory of this log: it was removed, renamed or replaced during the run, \
          and with it {} in {bytes} bytes; put it back and continue the log, or start a new \
@@ -76,7 +76,7 @@ pub enum MetricsError {
         bytes: u64,
     },
 
-    /// A data file of a log was truncated, removed or replaced while the log was written.
+    /// A data file of a log was truncated, removed or replaced while the log was being written.
     #[error(
         "{}: found {found}, expected the {} in {bytes} bytes that were written: it was truncated, removed or replaced \
          during the run; put it back and continue the log, or start a new one; a log that lacks only its last rows \
@@ -94,7 +94,7 @@ pub enum MetricsError {
         bytes: u64,
     },
 
-    /// An info file of a log was overwritten while the log was written.
+    /// An info file of a log was overwritten while the log was being written.
     #[error(
         "{}: found {found} bytes, expected the {expected} bytes that this log was started with; put the file back: \
          without it, the rows cannot be read",
@@ -174,7 +174,7 @@ pub enum MetricsError {
         expected: &'static str,
     },
 
-    /// A limit of this crate was exceeded; limits keep a broken log from taking all memory.
+    /// A limit of this crate was exceeded; limits keep a broken log from using up all memory.
     #[error("{}: found {found} {what}, expected at most {limit}", path.shown())]
     TooLarge {
         /// The file or directory.
@@ -218,7 +218,7 @@ pub enum MetricsError {
     },
 
     /// A data file lacks a column.
-    #[error("{}:1: found the columns {found}, expected also {column}", path.shown(), column = one_line(column), found = one_line(found))]
+    #[error("{}:1: found the columns {found}, expected {column} as well", path.shown(), column = one_line(column), found = one_line(found))]
     MissingColumn {
         /// The data file.
         path: PathBuf,
@@ -281,22 +281,22 @@ pub enum MetricsError {
 
     /// The last line of a data file has no line ending: its writer was stopped in the middle of a row.
     #[error(
-        "{0}: found a last line without a line end, expected complete rows; its writer was interrupted, or \
-         an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which \
-         deletes it (`driftworld run … --resume`, LogWriter::resume)"
+        "{0}: found a last line without a line ending, expected complete rows; its writer was interrupted, or \
+         an editor omitted the line ending: add one if the line is complete; otherwise delete the line, or continue the \
+         log, which deletes it (`driftworld run … --resume`, LogWriter::resume)"
     )]
     TornLastLine(LogLine),
 
     /// Lines of a data file end with a carriage return only.
     #[error(
-        "{0}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line ends"
+        "{0}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line endings"
     )]
     CarriageReturns(LogLine),
 
     /// A quote in a data file is never closed, so it swallows the rows after it.
     #[error(
-        "{0}: found a quote that opens a cell and is never closed, expected another at the end of the cell; the \
-         rows after it were read as part of the cell"
+        "{0}: found a quote that opens a cell and is never closed, expected a closing quote at the end of the cell; \
+         the rows after it were read as part of the cell"
     )]
     OpenQuote(LogLine),
 
@@ -396,7 +396,7 @@ pub enum MetricsError {
 
     /// A time stamp is not of the form `20200913T122640.000000`.
     #[error(
-        "timestamp: found {}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, on an existing day",
+        "timestamp: found {}, expected YYYYMMDDTHHMMSS.ffffff with a valid date, as in 20200913T122640.000000",
         one_line(.0)
     )]
     Timestamp(String),
@@ -450,9 +450,9 @@ pub enum MetricsError {
     },
 
     /// The log of a single-task expert trains no task, or several.
-    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task; take \
-         one log for each task, or compare with an agent that ran the same blocks by --against, with floors and \
-         ceilings by --scales", run_id = one_line(run_id), found = one_line(found))]
+    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task; give \
+         one log per task, or compare with an agent that ran the same blocks (--against), or with floors and \
+         ceilings (--scales)", run_id = one_line(run_id), found = one_line(found))]
     NotSingleTask {
         /// Name of the log.
         run_id: String,
@@ -482,7 +482,7 @@ pub enum MetricsError {
     StePickle(PathBuf),
 
     /// A lifetime has too many regimes.
-    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by \
+    #[error("log {run_id}: found more than {limit} regimes, expected at most that many; do tasks alternate row by \
          row?", run_id = one_line(run_id))]
     TooManyRegimes {
         /// Name of the log.

@@ -20,7 +20,7 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// The budget of some rows of a log.
+    /// The budget of the given rows of a log.
     fn of(log: &Log, deployed: &[usize], before: usize) -> Self {
         let params = log.rows.task_params();
         let index = log.rows.metric(INDEX);
@@ -51,7 +51,7 @@ fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
 }
 
 /// The training budget of each task of a lifetime with these regimes, which must have been prepared from this log with these
-/// options. Rows of a drift count for its nearer end.
+/// options. Rows of a drift count towards its nearer end.
 pub(crate) fn budgets(log: &Log, regimes: &[Regime], options: &Options) -> BTreeMap<String, Budget> {
     let mut learned: BTreeMap<&str, (Vec<usize>, usize)> = BTreeMap::new();
     for regime in regimes.iter().filter(|regime| regime.block_type == BlockType::Train) {
@@ -71,7 +71,7 @@ pub(crate) fn budgets(log: &Log, regimes: &[Regime], options: &Options) -> BTree
     learned.into_iter().map(budget).collect()
 }
 
-/// The task that is learned in a row of a regime. In a drift, this is the nearer end.
+/// The task that is learned in a row of a regime; in a drift, the nearer end.
 pub(crate) fn task_learned(regime: &Regime, row: usize) -> &str {
     regime
         .drift

@@ -1,4 +1,4 @@
-//! Drifts: regimes in which the variant changes gradually, and the tasks that they count for.
+//! Drifts: regimes in which the variant changes gradually, and the tasks that they count towards.
 
 use indexmap::IndexSet;
 
@@ -61,7 +61,8 @@ impl Drift {
         if self.is_nearer_to[row] { &self.to } else { &self.from }
     }
 
-    /// Whether the drift has rows nearer to its first task, rows nearer to its last, and ends nearer to its last.
+    /// Whether the drift has rows nearer to its first task, whether it has rows nearer to its last, and whether it ends nearer to
+    /// its last.
     fn passes(&self) -> [bool; 3] {
         [
             self.is_nearer_to.contains(&false),
@@ -81,9 +82,9 @@ pub fn logged_word(name: &str) -> String {
     }
 }
 
-/// Sets the tasks that each learning regime counts for: its own task, or for a drift the ends that it comes near and that also
-/// occur elsewhere in the lifetime. A drift from an already learned task to another counts only as learning the other, so that
-/// its effect on the first task is an effect of learning the other.
+/// Sets the tasks that each learning regime counts towards: its own task, or, for a drift, the ends that it comes near and that
+/// also occur elsewhere in the lifetime. A drift from an already learned task to another counts only as learning the other, so
+/// its effect on the first task counts as an effect of learning the other.
 pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();

@@ -39,7 +39,8 @@ impl Lifetime {
         &self.run_id
     }
 
-    /// All tasks in lower case: those that were trained, by first learning block, then the others, by first evaluation block.
+    /// All tasks in lower case: trained tasks in order of their first learning block, then the others in order of their first
+    /// evaluation block.
     pub fn tasks(&self) -> &[String] {
         &self.tasks
     }
@@ -67,7 +68,7 @@ impl Lifetime {
         self.experts.get(task).map_or(&[], Vec::as_slice)
     }
 
-    /// The preprocessed learning curves of a task's single-task expert, one per run, in the order of the runs given.
+    /// The preprocessed learning curves of a task's single-task expert, one per run, in the order in which the runs were given.
     pub fn expert_curves(&self, task: &str) -> impl Iterator<Item = Vec<f64>> {
         self.experts_of(task).iter().map(SteRun::training_performance)
     }

@@ -39,15 +39,15 @@ pub struct Regime {
     pub task_params: TaskParams,
     /// The ends of the drift, if the variant changes gradually.
     pub drift: Option<Drift>,
-    /// The tasks that it counts as learning, for maintenance and transfer: its own, or for a drift the ends that it
-    /// counts for. Empty for an evaluation.
+    /// The tasks that it counts as learning, for maintenance and transfer: its own, or, for a drift, the ends that it
+    /// counts towards. Empty for an evaluation.
     pub learns: Vec<String>,
     /// Indices of its rows in the log; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
     /// Cumulative environment steps at the end of each row, over all rows of the lifetime that count; `None` unless the log has
-    /// a column `episode_step_count` with a number of 0 or more in each of them.
+    /// a column `episode_step_count` with a non-negative number in each of these rows.
     pub steps: Option<Vec<f64>>,
     /// Performance of each row as logged.
     pub raw: Vec<f64>,
@@ -113,7 +113,7 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
 /// Splits rows, sorted by experience, into regimes.
 pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
     let rows = usable.rows;
-    // The names under which tasks are scored, and the index among them for each logged name.
+    // The names under which tasks are scored, and, for each logged name, the index of its scored name.
     let mut names = IndexSet::new();
     let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
     let scored: Vec<usize> = rows.task_names().values().iter().map(number).collect();

@@ -170,8 +170,8 @@ pub(super) fn gather(
 
 /// Forms an expert's regimes under the name of the task that it serves.
 ///
-/// Variants count, and as in the reference, which does this when it stores an expert, regimes are formed before rows without a
-/// number are dropped: such rows separate stretches that are smoothed independently.
+/// Variants are kept apart. As in the reference, which does this when it stores an expert, regimes are formed before rows without
+/// a number are dropped: a stretch of such rows still separates its neighbours, which are smoothed independently.
 fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, MetricsError> {
     let rows = complete_rows(&expert.log, &expert.shown_name(), &options.perf_measure)?;
     let with_variants = Options {

@@ -42,11 +42,11 @@ pub enum Delimiter {
 ///
 /// Corresponds to `python -m l2logger.aggregate`: the columns are `block_num`, `regime_num`, `exp_num`, the other standard columns,
 /// then the log's own in alphabetical order. Task names are in lower case, and `regime_num` counts stretches of one block, type,
-/// subtype and task from 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual position and not
-/// last, writes task parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers in metrics with `.0`,
+/// subtype and task from 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual position rather
+/// than last, writes task parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers in metrics with `.0`,
 /// and combines several logs in one table, with the log's name in the first column, `run_id`.
 ///
-/// At most [`MAX_RECORDS`] rows and [`MAX_CELLS`] cells of logs' own columns, over all logs.
+/// All logs together may have at most [`MAX_RECORDS`] rows, and at most [`MAX_CELLS`] cells in their own columns.
 #[derive(Debug, Clone, Default)]
 pub struct LogTable {
     kept: KeptRows,

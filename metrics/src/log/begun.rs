@@ -18,7 +18,7 @@ use crate::MetricsError;
 ///
 /// # Errors
 /// [`MetricsError::MissingFile`] and [`MetricsError::Json`] if an info file is missing or torn although the directory contains other
-/// files, [`MetricsError::LoggerInfo`] if a field of it is wrong, [`MetricsError::NotADirectory`] for a file,
+/// files, [`MetricsError::LoggerInfo`] if a field is wrong, [`MetricsError::NotADirectory`] if the path is a file, or
 /// [`MetricsError::Io`].
 pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioInfo)>, MetricsError> {
     let dir = dir.as_ref();

@@ -23,7 +23,7 @@ pub(super) struct Written {
 impl Written {
     /// The state of an earlier writer's file, with this number of rows and bytes.
     pub(super) fn found(path: &Path, rows: u64, bytes: u64) -> Result<Self, MetricsError> {
-        let found = fs::metadata(path).map_err(MetricsError::io(path, "look at this file"))?;
+        let found = fs::metadata(path).map_err(MetricsError::io(path, "inspect this file"))?;
         Ok(Self {
             rows,
             bytes,
@@ -115,7 +115,7 @@ impl BlockFile {
         let io = |doing| MetricsError::io(folder.shown_inside(&inside), doing);
         let file = OpenOptions::new().append(true).create(before.is_none()).open(&path);
         let file = file.map_err(io("open this file"))?;
-        let found = file.metadata().map_err(io("measure this file"))?;
+        let found = file.metadata().map_err(io("read the size of this file"))?;
         let mut written = before.unwrap_or(Written::NEW_FILE);
         if found.len() != written.bytes && found.is_file() {
             return Err(written.lost_error(folder, &inside, rows_and_bytes(&path, found.len())));
@@ -134,7 +134,7 @@ impl BlockFile {
     }
 
     /// Whether the opened file is still the one at its path, and has the expected length. This takes one system call, which also
-    /// covers the log's directory; [`Written::check`] finds the fault.
+    /// detects a lost directory; [`Written::check`] identifies the fault.
     pub(super) fn is_unchanged(&self) -> bool {
         fs::metadata(&self.place).is_ok_and(|found| {
             found.is_file() && found.len() == self.written.bytes && self.written.identity == Some(Identity::of(&found))
@@ -191,7 +191,7 @@ impl Digest {
 
     /// The digest of a file; `None` if it cannot be read.
     fn of(path: &Path) -> Option<Self> {
-        // Opened directly, not by driftworld-files: it is our own file, just written.
+        // Opened directly, not through driftworld-files: it is our own file, just written.
         let (mut file, mut piece, mut digest) = (File::open(path).ok()?, vec![0; 1 << 16], Self::NEW);
         loop {
             match file.read(&mut piece).ok()? {

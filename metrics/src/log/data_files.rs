@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 8;
 pub(super) const FILE_NAME: &str = "data-log.tsv";
 
 /// Maximum depth of links to directories, enough for those of workers and blocks. Anything deeper behind a link is skipped, so
-/// that circular links end.
+/// circular links cannot loop forever.
 const MAX_LINK_DEPTH: usize = 2;
 
 /// All data files under a log directory, sorted by path with numbers compared as numbers. A file reached by several paths

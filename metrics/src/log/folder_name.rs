@@ -11,7 +11,7 @@ const MAX_BYTES: usize = 200;
 /// Writes every byte except ASCII letters, digits, `_`, `-` and `.` as `%` and two hexadecimal digits. Also encodes a leading `.`,
 /// which would hide the folder or lead out of it, and a trailing one, which some file systems drop.
 ///
-/// The error for a name that is too long names the folder `place`.
+/// If the name is too long, the error refers to the folder `place`.
 pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> {
     let mut encoded = String::with_capacity(name.len());
     let last = name.len().saturating_sub(1);
@@ -31,7 +31,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
     if encoded.len() > MAX_BYTES {
         return Err(MetricsError::too_large(
             place,
-            "letters in the name of a folder for a task or a run",
+            "bytes in the folder name of a task or a run",
             encoded.len() as u64,
             MAX_BYTES as u64,
         ));

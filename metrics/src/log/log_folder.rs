@@ -31,7 +31,7 @@ impl LogFolder {
         let absolute = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
         let lock = lock(dir, File::try_lock)?;
         let found = lock.as_ref().map(File::metadata).transpose();
-        let found = found.map_err(MetricsError::io(dir, "look at this directory"))?;
+        let found = found.map_err(MetricsError::io(dir, "inspect this directory"))?;
         Ok(Self {
             shown: dir.to_owned(),
             absolute,
@@ -88,7 +88,7 @@ impl LogFolder {
         for (name, length) in &self.info {
             let (path, expected) = (self.shown.join(name), *length);
             let Some(found) = self.length_of(name) else {
-                let expected = "the info file that this log was begun with; put it back";
+                let expected = "the info file that this log was started with; put it back";
                 return Err(MetricsError::missing_file(path, expected));
             };
             if found != expected {
@@ -132,11 +132,11 @@ pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) 
     if !cfg!(unix) {
         return Ok(None);
     }
-    // Opened directly, not by driftworld-files: that opens regular files only, and this is a folder.
+    // Opened directly, not through driftworld-files, which opens regular files only: this is a folder.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),
-        // Without a lock, the directory stays open for its identity.
+        // Without a lock, the open directory still provides its identity.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
     }
 }

@@ -17,7 +17,7 @@ pub const LOG_FORMAT_VERSION: &str = "1.1";
 
 pub(super) const FILE_NAME: &str = "logger_info.json";
 const EXPECTED_FILE: &str = "a JSON object with the list metrics_columns";
-const EXPECTED_COLUMNS: &str = "a list of at least one name, each once and none a standard column";
+const EXPECTED_COLUMNS: &str = "a list of at least one name, without duplicates or standard columns";
 
 /// The metrics columns of a log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

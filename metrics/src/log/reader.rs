@@ -11,7 +11,7 @@ use super::validation::Check;
 use super::warning::LogWarning;
 use crate::MetricsError;
 
-/// A log that was read.
+/// A log, read from its directory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// Name of the log's directory.

@@ -48,7 +48,7 @@ choice! {
         Permuted = "permuted",
         /// Two tasks in turn.
         Alternating = "alternating",
-        /// A single-task expert: one task, trained alone, to compare with.
+        /// A single-task expert: one task, trained alone as a baseline.
         Ste = "ste",
         /// Anything else.
         Custom = "custom",
@@ -97,7 +97,7 @@ impl ScenarioInfo {
     }
 
     /// Whether a block of our own scenario may skip experience numbers here: some of its regimes have a budget of decisions, and
-    /// either a regime ends here, or regimes are mixed, so that any may have ended.
+    /// either a regime ends here, or regimes are mixed, so any of them may have ended.
     pub(super) fn leaves_numbers_unused(&self, block: u64, regime_ends: bool) -> bool {
         let Some(block) = self
             .extra
@@ -111,7 +111,7 @@ impl ScenarioInfo {
         has_budgets && (regime_ends || block.get("mix").is_some())
     }
 
-    /// Number of experiences of our own scenario, if a log that ends in this block after `done` of them is unfinished.
+    /// The number of experiences that our own scenario plans, if a log that ends in this block after `done` of them is unfinished.
     pub(super) fn missing_end(&self, last_block: u64, done: u64) -> Option<u64> {
         let blocks = self.extra.get("scenario")?["blocks"].as_array()?;
         let regimes = blocks.iter().filter_map(|block| block["regimes"].as_array()).flatten();
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scenario_has_an_end_unless_a_budget_may_leave_numbers_unused() {
+    fn missing_end_is_reported_unless_a_budget_may_leave_numbers_unused() {
         let with = |last: &str| {
             let text = format!(
                 r#"{{"scenario": {{"blocks": [{{"regimes": [{{"count": 3}}, {{"count": 2}}]}}, {{"regimes": [{last}]}}]}}}}"#

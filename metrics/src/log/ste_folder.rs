@@ -21,7 +21,7 @@ pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), Me
         return Err(MetricsError::bad_option(
             "STE data folder",
             data_folder.display().to_string(),
-            "a folder outside the log that is stored",
+            "a folder outside the log to be stored",
         ));
     }
     Ok(())
@@ -35,8 +35,8 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        // Not the system's copy, which would keep the mode and ignore the umask. Opened directly,
-        // not by driftworld-files: these are the log's own files, just found.
+        // Not `fs::copy`, which would keep the mode and ignore the umask. Opened directly, not
+        // through driftworld-files: these are the log's own files, just found.
         let copied = fs::File::open(file).and_then(|mut from| {
             let mut to = fs::File::create(&target)?;
             std::io::copy(&mut from, &mut to)?;
@@ -47,7 +47,7 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
     Ok(())
 }
 
-/// Renames a finished run to its name, or appends the first free number.
+/// Renames a finished run to its final name; if the name is taken, appends the first free number.
 pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBuf, MetricsError> {
     let names = std::iter::once(run.to_owned()).chain((2..).map(|number: u32| format!("{run}-{number}")));
     for dir in names.map(|name| task_dir.join(name)) {
@@ -64,9 +64,9 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
     unreachable!("there are more numbers than directories")
 }
 
-/// Moves a run into the temporary directory, with which it is removed.
+/// Moves a run into the temporary directory, so that both are removed together.
 pub(super) fn move_aside(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
-    // Keeps the path within the data folder, so that no two runs get the same one.
+    // Keeps the run's path within the data folder, so that no two runs get the same target.
     let names = [run.parent().and_then(Path::file_name), run.file_name()];
     let target_dir: PathBuf = std::iter::once(temporary.path())
         .chain([Path::new("old")])
@@ -102,7 +102,7 @@ pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
 
 /// Refuses a link in place of a task's directory, because it could lead out of the data folder.
 pub(super) fn own_directory(dir: &Path) -> Result<(), MetricsError> {
-    let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "look at this directory"))?;
+    let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "inspect this directory"))?;
     if kind.is_dir() {
         return Ok(());
     }

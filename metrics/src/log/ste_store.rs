@@ -28,7 +28,7 @@ choice! {
 pub struct StoredRun {
     /// The trained task, lower-case.
     pub task_name: String,
-    /// The new folder of its log. A number is appended to a name that was taken, as in `run-2`.
+    /// The new folder of its log. If the name was taken, a number is appended, as in `run-2`.
     pub dir: PathBuf,
 }
 

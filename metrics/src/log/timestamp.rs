@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_existing_dates_and_times_are_accepted() {
+    fn only_valid_dates_and_times_are_accepted() {
         let check = |text: &str, expected: Option<&str>| {
             assert_eq!(
                 text.parse::<Timestamp>().ok().map(|stamp| stamp.to_string()).as_deref(),
@@ -153,7 +153,7 @@ mod tests {
         }
 
         #[test]
-        fn only_existing_dates_round_trip(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
+        fn only_valid_dates_round_trip(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
             let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
             let last = match month {
                 2 => 28 + i64::from(is_leap),

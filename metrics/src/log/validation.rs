@@ -49,16 +49,16 @@ pub struct LogCounts {
     pub complete_rows: usize,
     /// Experiences: pairs of number and worker.
     pub experiences: usize,
-    /// Different block numbers.
+    /// Distinct block numbers.
     pub blocks: usize,
     /// Workers.
     pub workers: usize,
-    /// Different task names.
+    /// Distinct task names.
     pub tasks: usize,
 }
 
 /// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never decrease within a file;
-/// every file has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns
+/// every file has the same columns, those of the log's version; each experience has exactly one complete row, at its end. Warns
 /// about departures from convention: task names that are not two words, missing or unknown words in `scenario_info.json`,
 /// missing experience numbers, time stamps that run backwards, folders not named after the worker and the block of their rows,
 /// an unfinished last experience, and metrics without numbers.
@@ -122,7 +122,8 @@ impl Check {
         Ok((logger_info, scenario_info, table.rows))
     }
 
-    /// Adds a broken rule that does not affect scores: a problem in validation, a warning with the same text in reading.
+    /// Adds a breach of a rule that does not affect scores: validation lists it as a problem, reading as a warning with the same
+    /// text.
     fn add_minor_fault(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
         match self.faults {
             Faults::List(_) => self.faults.add(fault),
@@ -257,8 +258,8 @@ impl Check {
         }
     }
 
-    /// Checks that each experience of a worker has exactly one complete row, its last; the worker's last experience may
-    /// have none.
+    /// Checks that each experience of a worker has exactly one complete row, at its end; the worker's last experience
+    /// may have none.
     fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);

@@ -29,8 +29,8 @@ pub enum LogWarning {
         /// The accepted words.
         expected: String,
     },
-    /// The version in `logger_info.json` contradicts the columns; the columns count.
-    #[error("{}:1: found {} block_subtype, expected {} in a log of format {}; {}", path.shown(), if *has_subtype { "the column" } else { "no column" }, if *has_subtype { "none" } else { "one" }, one_line(version), if *has_subtype { "it counts" } else { "read as wake" })]
+    /// The version in `logger_info.json` contradicts the columns; the columns take precedence.
+    #[error("{}:1: found {} block_subtype, expected {} in a log of format {}; {}", path.shown(), if *has_subtype { "the column" } else { "no column" }, if *has_subtype { "none" } else { "one" }, one_line(version), if *has_subtype { "used as is" } else { "read as wake" })]
     Version {
         /// The first data file.
         path: PathBuf,
@@ -49,12 +49,12 @@ pub enum LogWarning {
         /// The time stamp above.
         before: Timestamp,
     },
-    /// A row is in the folder of another worker or block; its own fields count.
-    #[error("{at}: found a row of another folder, expected it in {}; kept", one_line(expected))]
+    /// A row is in the folder of another worker or block; its own fields take precedence.
+    #[error("{at}: found a row that belongs in another folder, expected it in {}; kept", one_line(expected))]
     OtherFolder {
         /// File and line; the first such line of the file.
         at: LogLine,
-        /// The folder it should lie in, as `WORKER/BLOCKNUM-BLOCKTYPE`.
+        /// The folder it should be in, as `WORKER/BLOCKNUM-BLOCKTYPE`.
         expected: String,
     },
     /// A worker's last experience has no complete row: the run was stopped, or is still running.
@@ -67,7 +67,7 @@ pub enum LogWarning {
         /// Number of the experience.
         exp_num: u64,
     },
-    /// The log of one of our own scenarios ends before it: the run was stopped, or is still running.
+    /// The log of one of our own scenarios ends before the scenario does: the run was stopped, or is still running.
     #[error("the log ends after {done} of the {planned} experiences of its scenario; scored as far as it goes")]
     EndsEarly {
         /// The number of its last experience, plus one.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::{LogLine, MetricsError};
 
-/// Number of tabs from which a line looks like a row: no row has fewer.
+/// Minimum number of tabs in a line that looks like a row: no row has fewer.
 const MIN_ROW_TABS: usize = 8;
 
 /// The whole rows at the start of a file.

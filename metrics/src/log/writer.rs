@@ -41,7 +41,7 @@ pub(super) struct Progress {
     last_exp_num: u64,
     /// Workers that completed the last experience.
     completed_by: BTreeSet<String>,
-    /// The block of each worker's last row of the last experience.
+    /// For each worker, the block of its last row in the last experience.
     begun_in: BTreeMap<String, (u64, BlockType)>,
 }
 
@@ -241,7 +241,7 @@ impl Progress {
     fn check(&self, record: &Record) -> Result<(), MetricsError> {
         let order = |field: &str, found: u64, last: u64| {
             if found < last {
-                let expected = format!("at least {last}, the number before it: numbers never decrease");
+                let expected = format!("at least {last}, the previous number: numbers never decrease");
                 return Err(bad_record(record, field, found.to_string(), expected));
             }
             Ok(())
@@ -263,7 +263,7 @@ impl Progress {
             && *block_type != record.block_type
         {
             let found = record.block_type.to_string();
-            let expected = format!("{block_type}, as in the row of this experience before it");
+            let expected = format!("{block_type}, as in the previous row of this experience");
             return Err(bad_record(record, "block_type", found, expected));
         }
         Ok(())
@@ -306,7 +306,7 @@ fn check_cells(record: &Record) -> Result<(), MetricsError> {
     }
     for (name, value) in &record.metrics {
         if name.is_empty() || columns::STANDARD_COLUMNS.contains(&name.as_str()) {
-            let expected = "a name that is not empty and not a standard column's".to_owned();
+            let expected = "a non-empty name that is not a standard column's".to_owned();
             return Err(bad_record(record, "metrics", cell::shown(name), expected));
         }
         if value.is_infinite() {
@@ -316,7 +316,7 @@ fn check_cells(record: &Record) -> Result<(), MetricsError> {
     }
     for name in record.texts.keys() {
         if name.is_empty() || columns::STANDARD_COLUMNS.contains(&name.as_str()) || record.metrics.contains_key(name) {
-            let expected = "a name that is not empty and neither a standard column's nor a metric's".to_owned();
+            let expected = "a non-empty name that is neither a standard column's nor a metric's".to_owned();
             return Err(bad_record(record, "texts", cell::shown(name), expected));
         }
     }

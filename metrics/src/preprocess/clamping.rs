@@ -1,4 +1,4 @@
-//! Clamping: moves performances outside a task's usual range to its nearer end.
+//! Clamping: moves performances outside a task's usual range to the nearer end of that range.
 
 use super::given_range;
 use crate::lifetime::Lifetime;

@@ -39,9 +39,9 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
     if length < 3 || total <= 0.0 {
         return values.to_vec();
     }
-    // Normalises the weights before adding, as the reference does: windows that tie in exact arithmetic, as on a
-    // plateau of clamped data, then have the reference's bits, and so its first maximum. For windows longer than 11,
-    // the reference's order of addition depends on the processor.
+    // Normalises the weights before adding, as the reference does. Windows that tie in exact arithmetic, as on a
+    // plateau of clamped data, then round as in the reference, so the same one is the first maximum. For windows
+    // longer than 11, the reference's order of addition depends on the processor.
     let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
     let mirrored: Vec<f64> = (values[1..length].iter().rev())
         .chain(values)
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn window_of_three_averages_a_value_with_the_two_before_it() {
-        // Mirrored: 9 4 | 1 4 9 16 | 9 4; kept are the first four windows of three: (9+4+1)/3, (4+1+4)/3, …
+        // Mirrored: 9 4 | 1 4 9 16 | 9 4; the first four windows of three are kept: (9+4+1)/3, (4+1+4)/3, …
         let found = smoothed(&[1.0, 4.0, 9.0, 16.0], Some(3), SmoothingMethod::Flat);
         let expected = [14.0 / 3.0, 3.0, 14.0 / 3.0, 29.0 / 3.0];
         assert!(

@@ -235,7 +235,7 @@ mod tests {
         }
         let found: Vec<Option<f64>> = contests.strata.iter().map(Contest::probability).collect();
         assert_eq!(found, [Some(1.0), None]);
-        // The mean of a resample is over the strata it has: 1 (run 1 only), 0 (run 2 only) or 0.5 (both).
+        // The mean of a resample is taken over the strata with pairs: 1 (run 1 only), 0 (run 2 only) or 0.5 (both).
         let options = BootstrapOptions {
             resampling: Resampling::Runs,
             ..BootstrapOptions::default()

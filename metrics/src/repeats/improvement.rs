@@ -18,7 +18,7 @@ pub struct Improvement {
     /// most 5 % of pairs of equal agents, whatever the correlation within runs. `None` if each agent has only one run.
     #[serde(default)]
     pub p_value: Option<f64>,
-    /// The smallest possible p-value with this number of runs: 0.1 for three of each.
+    /// The smallest possible p-value with this number of runs: 0.1 for three runs of each agent.
     #[serde(default)]
     pub least_p_value: Option<f64>,
     /// The shared strata, in A's order.
@@ -75,14 +75,14 @@ pub fn probability_of_improvement(
     if shared.is_empty() {
         let listed = |table: &ScoreTable| table.strata().next().unwrap_or_default().to_owned();
         let found = format!(
-            "no stratum that both have, {:?} in one and {:?} in the other",
+            "no stratum in common, {:?} in one and {:?} in the other",
             listed(a),
             listed(b)
         );
         return Err(wrong(
             "two tables to compare".to_owned(),
             found,
-            "tasks of the same names",
+            "tasks with the same names",
         ));
     }
     options.check(a.num_scores() + b.num_scores())?;
@@ -167,7 +167,7 @@ mod tests {
         let error = probability_of_improvement(&a, &b, &BootstrapOptions::default()).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "scores, two tables to compare: found no stratum that both have, \"x\" in one and \"y\" in the other, expected tasks of \
+            "scores, two tables to compare: found no stratum in common, \"x\" in one and \"y\" in the other, expected tasks with \
              the same names"
         );
     }

@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn few_divisions_are_all_counted() {
-        // Of 20 ways to choose three of six, the observed one and its reverse differ as much.
+        // Of 20 ways to choose three of six, only the observed one and its reverse differ this much.
         check(&[&[4.0], &[5.0], &[6.0]], &[&[1.0], &[2.0], &[3.0]], 0.1, 0.1);
         check(&[&[4.0], &[5.0], &[6.0]], &[&[4.0], &[5.0], &[6.0]], 1.0, 0.1);
         // scipy.stats.mannwhitneyu([1, 2, 7, 9], [3, 4, 5, 6, 8], method="exact").pvalue.

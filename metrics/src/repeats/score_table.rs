@@ -135,7 +135,7 @@ impl ScoreTable {
         if !self.varies(resampling) {
             let what = match resampling {
                 Resampling::Strata => "each task was scored in only one run",
-                Resampling::Runs => "there is one run only",
+                Resampling::Runs => "there is only one run",
             };
             return Some(format!("no interval: {what}; repeat the lifetime with other seeds"));
         }
@@ -252,7 +252,7 @@ mod tests {
         let one: Runs = &[("1", &[("a", 1.0), ("b", 2.0)])];
         let each = "no interval: each task was scored in only one run; repeat the lifetime with other seeds";
         check(one, Resampling::Strata, Some(each));
-        let only = "no interval: there is one run only; repeat the lifetime with other seeds";
+        let only = "no interval: there is only one run; repeat the lifetime with other seeds";
         check(one, Resampling::Runs, Some(only));
         let ragged: Runs = &[("1", &[("a", 1.0), ("b", 2.0)]), ("2", &[("a", 2.0)])];
         let narrow = "the interval is too narrow: only one run scored b, so its variance is unknown";

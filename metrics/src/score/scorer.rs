@@ -64,7 +64,7 @@ impl Scorer {
                 return Err(MetricsError::bad_option(
                     "headline of a metric",
                     format!("{name:?}"),
-                    "a name that is not empty and that no other metric or field of the results has",
+                    "a non-empty name that no other metric or field of the results has",
                 ));
             }
         }
