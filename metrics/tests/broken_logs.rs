@@ -176,8 +176,8 @@ fn directory_without_a_log_names_what_is_missing() {
     check("LOG/logger_info.json: found no such file, expected a JSON object with the list metrics_columns");
     fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\": [1]}").unwrap();
     check(
-        "logger_info.json, metrics_columns: found [1], expected a list of at least one name, each once and none a \
-         standard column",
+        "logger_info.json, metrics_columns: found [1], expected a list of at least one name, without duplicates \
+         or standard columns",
     );
     fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\"").unwrap();
     check(

@@ -128,7 +128,7 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
             }
         }
         assert!(scores.null_bands["perf_maintenance_mrlep"].value < 0.0);
-        // The end of a drift is on the drift's own scale, so that nothing is compared with it.
+        // The end of a drift is on the drift's own scale, so nothing is compared with it.
         assert_eq!(scores.lifetime.number("perf_maintenance_mrtlp"), None);
     }
 }
@@ -188,7 +188,7 @@ fn lifetimes() -> impl Strategy<Value = Vec<Stretch>> {
     prop::collection::vec(prop_oneof![1 => learned, 2 => evaluated], 1..14)
 }
 
-/// The evaluations of a variant as (learning experiences before, mean), with distinct positions.
+/// The evaluations of a variant as (number of preceding learning experiences, mean), with distinct positions.
 fn points_of(lifetime: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
     let (mut learned, mut found) = (0, Vec::<(f64, Vec<f64>)>::new());
     for stretch in lifetime {
@@ -257,7 +257,7 @@ fn check_curve(lifetime: &[Stretch], variant: &'static str, curve: &EvaluationCu
     };
     assert!(close(curve.area, area), "{} {area}", curve.area);
     assert!(low - 1e-9 <= curve.area && curve.area <= high + 1e-9);
-    // Forgetting is the largest difference to the last height.
+    // Forgetting is the largest difference from the last height.
     let losses = heights.iter().map(|height| height - heights[heights.len() - 1]);
     assert!(close(curve.forgetting, losses.fold(0.0, f64::max)));
     assert!(curve.forgetting >= 0.0);

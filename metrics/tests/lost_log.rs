@@ -1,4 +1,4 @@
-//! A log that is removed, renamed, replaced or truncated while it is written: the writer reports it and recreates nothing.
+//! A log that is removed, renamed, replaced or truncated while it is being written: the writer reports it and recreates nothing.
 #![cfg(unix)]
 
 use std::fs::{self, OpenOptions};
@@ -34,7 +34,7 @@ fn file_of(dir: &Path, number: u64, workers: usize) -> PathBuf {
     dir.join(record.worker_id).join(block).join("data-log.tsv")
 }
 
-/// Damage to a log while it is written.
+/// Damage to a log while it is being written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mishap {
     FolderDeleted,
@@ -98,7 +98,7 @@ impl Mishap {
             }
             M::FileGrown => {
                 let mut whole = fs::read(file).unwrap();
-                whole.extend(b"a row of somebody else\n");
+                whole.extend(b"somebody else's row\n");
                 fs::write(file, whole).unwrap();
             }
             M::WorkerDeleted => fs::remove_dir_all(file.parent().unwrap().parent().unwrap()).unwrap(),

@@ -1,4 +1,4 @@
-//! User-defined metrics computed beside the crate's own, and definitions other than the reference's.
+//! User-defined metrics alongside the crate's own, and definitions other than the reference's.
 
 use driftworld_metrics::{
     Assessment, BlockType, Definitions, Direction, Headline, LifetimeMetrics, Log, LogWriter, LoggerInfo, Metric,

@@ -1,5 +1,5 @@
-//! Null bands: values of agents that never change lie inside, those of agents that forget outside; one band is checked against
-//! all permutations.
+//! Null bands: values of agents that never change lie inside, and values of agents that forget lie outside; one band is checked
+//! against all permutations.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,12 +15,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 /// One row: block, its type, task, number of the world, reward.
-type Lived = (u64, BlockType, &'static str, f64, f64);
+type LifetimeRow = (u64, BlockType, &'static str, f64, f64);
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
 
 /// Writes the log by hand: a writer that checks and flushes each row takes longer than scoring.
-fn log_of(rows: &[Lived]) -> Log {
+fn log_of(rows: &[LifetimeRow]) -> Log {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");
     let folder = dir.join("worker/0-train");
@@ -53,7 +53,7 @@ fn log_of(rows: &[Lived]) -> Log {
 
 /// Every task is evaluated before the first learning block and after each, always in the same worlds. `reward` gets the number
 /// of learned tasks, the block type, and the numbers of the task and the world.
-fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<Lived> {
+fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<LifetimeRow> {
     let mut rows = Vec::new();
     for learned in 0..=TASKS.len() {
         let block = 2 * learned as u64;
@@ -81,7 +81,7 @@ fn options() -> Options {
     }
 }
 
-fn scored(rows: &[Lived]) -> LifetimeMetrics {
+fn scored(rows: &[LifetimeRow]) -> LifetimeMetrics {
     score(&log_of(rows), &[], &options()).unwrap()
 }
 
@@ -108,7 +108,7 @@ fn by_luck(rng: &mut ChaCha8Rng, world: u32) -> f64 {
 }
 
 /// Lifetimes of an agent that never changes, with 20 worlds or fewer per evaluation.
-fn random_lifetimes(num: u64, shown: fn(Lived) -> Lived) -> Vec<LifetimeMetrics> {
+fn random_lifetimes(num: u64, shown: fn(LifetimeRow) -> LifetimeRow) -> Vec<LifetimeMetrics> {
     let lifetimes = 0..num;
     let of_seed = |seed: u64| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -251,7 +251,7 @@ fn band_of_constant_rewards_is_the_value() {
 }
 
 /// Learns each task, and forgets it when learning the next.
-fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
+fn forgetting(rng: &mut ChaCha8Rng) -> Vec<LifetimeRow> {
     lifetime(20, |learned, block_type, task, _| {
         let knows = if block_type == Train {
             task
@@ -376,7 +376,7 @@ fn shown_contrast_has_pairs_and_round_trips() {
 #[test]
 fn transfer_from_negative_performances_has_no_reading() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let rows: Vec<Lived> = forgetting(&mut rng)
+    let rows: Vec<LifetimeRow> = forgetting(&mut rng)
         .into_iter()
         .map(|(block, kind, task, world, reward)| (block, kind, task, world, reward - 50.0))
         .collect();
@@ -463,7 +463,7 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
 
 /// An expert's log; the expert learns one task at one level, and is evaluated at another, if at all.
 fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog {
-    let mut rows: Vec<Lived> = (0..10)
+    let mut rows: Vec<LifetimeRow> = (0..10)
         .map(|world| (0, Train, task, f64::from(world), learning))
         .collect();
     rows.extend((0..4).filter_map(|world| Some((1, Test, task, f64::from(world), evaluation?))));

@@ -80,7 +80,7 @@ fn simulated_tests_detect_as_often_as_predicted() {
         ([12, 4], [2.0, 0.5], 0.0),
     ] {
         let drawn: u32 = 3000;
-        let told = (0..drawn).filter(|_| {
+        let detected = (0..drawn).filter(|_| {
             let a: Vec<f64> = (0..nums[0])
                 .map(|_| effect + deviations[0] * normal(&mut rng))
                 .collect();
@@ -88,7 +88,7 @@ fn simulated_tests_detect_as_often_as_predicted() {
             let (t, freedom) = welch([&a, &b]);
             p_value(t, freedom) < 0.05
         });
-        let share = told.count() as f64 / f64::from(drawn);
+        let share = detected.count() as f64 / f64::from(drawn);
         let found = welch_power(nums, deviations, effect).unwrap();
         // The tolerance is four standard errors.
         let slack = 4.0 * (found * (1.0 - found) / f64::from(drawn)).sqrt();

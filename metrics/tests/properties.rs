@@ -9,7 +9,7 @@ use driftworld_metrics::{
 use proptest::prelude::*;
 use serde_json::Value;
 
-use crate::generators::{Lived, any_log, expert, lay_out, lifetime};
+use crate::generators::{LifetimeRow, any_log, expert, lay_out, lifetime};
 
 /// Options that request all values.
 fn options(normalization_method: NormalizationMethod, smoothing_method: SmoothingMethod) -> Options {
@@ -50,7 +50,7 @@ fn difference(a: &Value, b: &Value, place: &str) -> Option<String> {
 }
 
 /// Whether the performances of every task are all equal, or far enough apart that rounding does not matter.
-fn is_spread(rows: &[&[Lived]]) -> bool {
+fn is_spread(rows: &[&[LifetimeRow]]) -> bool {
     let rows = || rows.iter().copied().flatten();
     rows().all(|row| {
         let of_task = || {
@@ -69,9 +69,9 @@ const SMOOTHED: usize = 15;
 /// Whether the learning of a task, or of the expert, is smoothed. The first windows of smoothed data tie by mirroring (of x2 x1
 /// | x0 x1 x2 the first three and the last three have equal sums), and the last bit of the sums decides which is the first
 /// maximum.
-fn ties(rows: &[&[Lived]]) -> bool {
+fn ties(rows: &[&[LifetimeRow]]) -> bool {
     rows.iter().any(|rows| {
-        let num_of = |row: &Lived| rows.iter().filter(|other| other.task == row.task).count();
+        let num_of = |row: &LifetimeRow| rows.iter().filter(|other| other.task == row.task).count();
         rows.iter().any(|row| num_of(row) >= SMOOTHED)
     })
 }
@@ -91,32 +91,32 @@ fn without_places_of_maxima(scores: &mut Value) {
 
 /// Compares the scores of a lifetime with those after the same change to all performances.
 fn check_invariance(
-    lived: &[Lived],
-    expert: &[Lived],
+    life: &[LifetimeRow],
+    expert: &[LifetimeRow],
     options: &Options,
     change: impl Fn(f64) -> f64,
 ) -> Result<(), TestCaseError> {
-    prop_assume!(is_spread(&[lived, expert]));
+    prop_assume!(is_spread(&[life, expert]));
     let base = tempfile::tempdir().unwrap();
-    let changed = |rows: &[Lived]| -> Vec<Lived> {
-        let row = |row: &Lived| Lived {
+    let changed = |rows: &[LifetimeRow]| -> Vec<LifetimeRow> {
+        let row = |row: &LifetimeRow| LifetimeRow {
             performance: change(row.performance),
             ..row.clone()
         };
         rows.iter().map(row).collect()
     };
-    let scored = |name: &str, lived: &[Lived], expert: &[Lived]| {
+    let scored = |name: &str, life: &[LifetimeRow], expert: &[LifetimeRow]| {
         let (dir, expert_dir) = (base.path().join(name).join("log"), base.path().join(name).join("ste"));
-        lay_out(&dir, lived.iter().map(|row| (row, 0)));
+        lay_out(&dir, life.iter().map(|row| (row, 0)));
         lay_out(&expert_dir, expert.iter().map(|row| (row, 0)));
         let mut scores = scores(&dir, Some(&expert_dir), options);
-        if ties(&[lived, expert]) {
+        if ties(&[life, expert]) {
             without_places_of_maxima(&mut scores);
         }
         scores
     };
-    let before = scored("before", lived, expert);
-    let after = scored("after", &changed(lived), &changed(expert));
+    let before = scored("before", life, expert);
+    let after = scored("after", &changed(life), &changed(expert));
     prop_assert_eq!(difference(&before, &after, ""), None);
     Ok(())
 }
@@ -128,9 +128,9 @@ fn normalized() -> impl Strategy<Value = Options> {
 
 /// The same lifetime with performances that are small whole numbers, so that many sums tie, shifted in turn by
 /// 1e-11 times each entry of `moved`.
-fn tied(rows: &[Lived], moved: &[i8]) -> Vec<Lived> {
+fn tied(rows: &[LifetimeRow], moved: &[i8]) -> Vec<LifetimeRow> {
     let moves = moved.iter().cycle();
-    let row = |(row, moved): (&Lived, &i8)| Lived {
+    let row = |(row, moved): (&LifetimeRow, &i8)| LifetimeRow {
         performance: (row.performance / 34.0).round() + 10.0 + f64::from(*moved) * 1e-11,
         ..row.clone()
     };
@@ -171,11 +171,11 @@ proptest! {
     }
 
     #[test]
-    fn scores_do_not_depend_on_files(lived in lifetime(), folders in prop::collection::vec(0_usize..5, 1..40)) {
+    fn scores_do_not_depend_on_files(life in lifetime(), folders in prop::collection::vec(0_usize..5, 1..40)) {
         let base = tempfile::tempdir().unwrap();
         let (one, many) = (base.path().join("one/log"), base.path().join("many/log"));
-        lay_out(&one, lived.iter().map(|row| (row, 0)));
-        lay_out(&many, lived.iter().zip(folders.iter().copied().cycle()));
+        lay_out(&one, life.iter().map(|row| (row, 0)));
+        lay_out(&many, life.iter().zip(folders.iter().copied().cycle()));
         for normalization in NormalizationMethod::ALL {
             let options = options(*normalization, SmoothingMethod::Flat);
             prop_assert_eq!(scores(&one, None, &options), scores(&many, None, &options));
@@ -184,13 +184,13 @@ proptest! {
 
     #[test]
     fn rounding_changes_no_number_without_a_caution(
-        lived in lifetime(), expert in expert(), moved in prop::collection::vec(-1..=1_i8, 1..50),
+        life in lifetime(), expert in expert(), moved in prop::collection::vec(-1..=1_i8, 1..50),
         smoothing in prop::sample::select(SmoothingMethod::ALL), clean in any::<bool>(),
     ) {
         let base = tempfile::tempdir().unwrap();
         let scored = |name: &str, moved: &[i8]| {
             let (dir, expert_dir) = (base.path().join(name).join("log"), base.path().join(name).join("ste"));
-            lay_out(&dir, tied(&lived, moved).iter().map(|row| (row, 0)));
+            lay_out(&dir, tied(&life, moved).iter().map(|row| (row, 0)));
             lay_out(&expert_dir, tied(&expert, moved).iter().map(|row| (row, 0)));
             let experts = [read_ste_log(&expert_dir).unwrap()];
             let found = score(&read_log(&dir).unwrap(), &experts, &options(NormalizationMethod::Off, smoothing)).unwrap();
@@ -214,15 +214,15 @@ proptest! {
 
     #[test]
     fn normalised_scores_do_not_depend_on_the_zero_point(
-        lived in lifetime(), expert in expert(), options in normalized(), shift in -1000.0..1000.0,
+        life in lifetime(), expert in expert(), options in normalized(), shift in -1000.0..1000.0,
     ) {
-        check_invariance(&lived, &expert, &options, |performance| performance + shift)?;
+        check_invariance(&life, &expert, &options, |performance| performance + shift)?;
     }
 
     #[test]
     fn normalised_scores_do_not_depend_on_the_unit(
-        lived in lifetime(), expert in expert(), options in normalized(), scale in 0.01..100.0,
+        life in lifetime(), expert in expert(), options in normalized(), scale in 0.01..100.0,
     ) {
-        check_invariance(&lived, &expert, &options, |performance| performance * scale)?;
+        check_invariance(&life, &expert, &options, |performance| performance * scale)?;
     }
 }

@@ -19,7 +19,7 @@ struct Comparison {
     values: Vec<f64>,
     /// The low and high ends, of the strata, then of all.
     ends: Vec<[f64; 2]>,
-    /// In how many resamples each stratum had a pair.
+    /// Number of resamples in which each stratum had a pair.
     resamples_of_strata: Vec<u32>,
 }
 
@@ -58,9 +58,9 @@ fn oracle() -> Oracle {
     serde_json::from_str(include_str!("oracles/repeats_whole_runs.json")).unwrap()
 }
 
-/// The share that a sample of size n leaves out beyond a fixed point varies by √(0.025 · 0.975 / n): their ends lie between
-/// those of ours that leave out five standard deviations more and less. Compares shares, because there are gaps between the
-/// values.
+/// The share that a sample of size n leaves out beyond a fixed point varies by √(0.025 · 0.975 / n), so their ends lie between
+/// the ends of two of our intervals, which leave out five standard deviations more and less. Compares shares, because there are
+/// gaps between the values.
 #[test]
 fn whole_run_intervals_match_numpy() {
     let Oracle { resamples, comparisons } = oracle();

@@ -192,7 +192,7 @@ fn decreasing_numbers_are_faults_and_decreasing_time_is_a_warning() {
             "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
              in order of exp_num, block numbers never decrease",
         ],
-        &["LOG/w/0-train/data-log.tsv:2: found a row that belongs in another folder, expected it in w/1-train; kept"],
+        &["LOG/w/0-train/data-log.tsv:2: found a misplaced row, expected it in w/1-train; kept"],
     );
 }
 
@@ -238,8 +238,7 @@ fn files_share_the_columns_of_their_version() {
          LOG/w/0-train/data-log.tsv"
     );
     assert_eq!(problems, [expected]);
-    let version =
-        "LOG/w/0-train/data-log.tsv:1: found the column block_subtype, expected none in a log of format 1.0; used as is";
+    let version = "LOG/w/0-train/data-log.tsv:1: found the column block_subtype, expected none in a log of format 1.0; used as is";
     assert_eq!(warnings, [version]);
     let old = [HEADER, &row(0, 0, "complete")]
         .concat()
@@ -349,8 +348,8 @@ fn rows_in_another_workers_or_blocks_folder_are_warned_about() {
     assert_eq!(
         warnings,
         [
-            "LOG/w/1-train/data-log.tsv:3: found a row that belongs in another folder, expected it in v/1-train; kept",
-            "LOG/w/7-test/data-log.tsv:2: found a row that belongs in another folder, expected it in w/0-train; kept",
+            "LOG/w/1-train/data-log.tsv:3: found a misplaced row, expected it in v/1-train; kept",
+            "LOG/w/7-test/data-log.tsv:2: found a misplaced row, expected it in w/0-train; kept",
         ]
     );
 }

@@ -171,7 +171,7 @@ fn valid_prefix(path: &Path, experience: u64) -> Result<(u64, RecordingLines), C
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, RecordingLines::default())),
         Err(error) => return Err(failed(path, "read this file")(error)),
     };
-    let length = file.metadata().map_err(failed(path, "read the size of this file"))?.len();
+    let length = file.metadata().map_err(failed(path, "read this file's size"))?.len();
     let recording_error = |source| recording_error(path, source);
     let reader = match RecordingReader::new(BufReader::new(file)) {
         Ok(reader) => reader,

@@ -115,7 +115,7 @@ impl BlockFile {
         let io = |doing| MetricsError::io(folder.shown_inside(&inside), doing);
         let file = OpenOptions::new().append(true).create(before.is_none()).open(&path);
         let file = file.map_err(io("open this file"))?;
-        let found = file.metadata().map_err(io("read the size of this file"))?;
+        let found = file.metadata().map_err(io("read this file's size"))?;
         let mut written = before.unwrap_or(Written::NEW_FILE);
         if found.len() != written.bytes && found.is_file() {
             return Err(written.lost_error(folder, &inside, rows_and_bytes(&path, found.len())));

@@ -105,7 +105,7 @@ impl<'a> Header<'a> {
         if row.as_slice().len() > MAX_CELL_BYTES
             && let Some(index) = (0..row.len()).find(|index| row[*index].len() > MAX_CELL_BYTES)
         {
-            return faults.add(cell(index).error(format!("at most {MAX_CELL_BYTES} bytes; is a closing quote missing?")));
+            return faults.add(cell(index).error(format!("at most {MAX_CELL_BYTES} bytes; is a quote unclosed?")));
         }
         let cells = self.standard_cells(cell, table, faults)?;
         let mut numbers = table.take_buffer();

@@ -50,7 +50,7 @@ pub enum LogWarning {
         before: Timestamp,
     },
     /// A row is in the folder of another worker or block; its own fields take precedence.
-    #[error("{at}: found a row that belongs in another folder, expected it in {}; kept", one_line(expected))]
+    #[error("{at}: found a misplaced row, expected it in {}; kept", one_line(expected))]
     OtherFolder {
         /// File and line; the first such line of the file.
         at: LogLine,

@@ -49,7 +49,7 @@ impl BootstrapOptions {
             Err(MetricsError::bad_option(option, found, expected))
         };
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
-            let expected = "a number between 0 and 1, such as 0.95";
+            let expected = "a number between 0 and 1, e.g. 0.95";
             return wrong("confidence", self.confidence.to_string(), expected.to_owned());
         }
         let (resamples, confidence) = (self.resamples, self.confidence);
@@ -112,7 +112,7 @@ mod tests {
             };
             assert_eq!(options.check(num_scores).unwrap_err().to_string(), expected);
         };
-        let between = |found| format!("option confidence: found {found}, expected a number between 0 and 1, such as 0.95");
+        let between = |found| format!("option confidence: found {found}, expected a number between 0 and 1, e.g. 0.95");
         check(95.0, 2_000, 1, &between("95"));
         check(f64::NAN, 2_000, 1, &between("NaN"));
         check(

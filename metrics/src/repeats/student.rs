@@ -1,4 +1,4 @@
-//! Student's t: the half-width of an interval of few runs, in standard errors.
+//! Student's t: the half-width of an interval for few runs, in standard errors.
 
 /// The number of standard errors, on either side, within which Student's t lies with this confidence. `confidence` is between 0 and
 /// 1; `freedom`, the degrees of freedom, is above 0 and need not be whole.

@@ -59,7 +59,7 @@ pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -
     reached.iter().filter_map(of_task).collect()
 }
 
-/// The evaluations and the learning of a task, by the number of learning experiences before.
+/// The evaluations and the learning of a task, each by the number of learning experiences before it.
 #[derive(Default)]
 struct History {
     evaluated: Vec<usize>,
@@ -173,7 +173,7 @@ impl Curve {
 
     fn lag(&self, first_learning: Option<usize>) -> Option<f64> {
         let first_learning = first_learning.unwrap_or(self.0[0].learned);
-        // The level when learning began: the evaluation before, or else the first.
+        // The level when learning began: the evaluation before it, or else the first.
         let start = self
             .0
             .iter()

@@ -42,7 +42,7 @@ impl LifetimeMetrics {
 /// `NAME_settings.json`. Returns the files in this order.
 ///
 /// # Errors
-/// As [`LifetimeMetrics::save`].
+/// Those of [`LifetimeMetrics::save`].
 pub fn save_all(
     lifetimes: &[LifetimeMetrics],
     dir: impl AsRef<Path>,

@@ -43,40 +43,41 @@ pub struct LifetimeMetrics {
     pub runtime: f64,
     /// Range per task that was scaled to 1..=101; `null` without normalisation.
     pub normalization_data_range: Option<IndexMap<String, DataRange>>,
-    /// Means of the columns as logged, by column: the scored one first, then `reward` and `success` if the log has them. These
-    /// can be compared between lifetimes, however these were scaled.
+    /// Means of the columns as logged, by column: the scored one first, then `reward` and `success` if the log has them. They
+    /// are not scaled, so they can be compared between lifetimes.
     #[serde(default)]
     pub as_logged: IndexMap<String, AsLogged>,
-    /// Notes for readers of the values; in the JSON if there are any.
+    /// Notes on the values for readers; the JSON has this field only if there are any.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// The null bands of metrics that permuting evaluations can test, by name: their range if the agent had never changed;
-    /// includes contrasts of transfer even if only ratios were requested. Not in the JSON, which has the reference's fields.
+    /// The null band of each metric that can be tested by permuting evaluations, by name: the values to expect if the agent had
+    /// never changed. Includes transfer contrasts even if only ratios were requested. Not in the JSON, which has only the
+    /// reference's fields.
     #[serde(default, rename = "null")]
     pub null_bands: IndexMap<String, NullBand>,
     /// The values behind each null band: one for each of [`NULL_PERMUTATIONS`](crate::NULL_PERMUTATIONS) permutations, in an
-    /// order that all lifetimes share, infinite if undefined. Not in the JSON; empty for a lifetime that was read back.
+    /// order that all lifetimes share, infinite if undefined. Not in the JSON; empty for a lifetime read from JSON.
     #[serde(skip)]
     pub null_draws: IndexMap<String, Vec<f64>>,
-    /// The reading of each metric that has a neutral value, by name. Not in the JSON, which has the reference's fields; those
-    /// of [`LifetimeMetrics::whole`] are rows of [`LifetimeMetrics::summary`].
+    /// The reading of each metric that has a neutral value, by name. Not in the JSON, which has only the reference's fields;
+    /// [`LifetimeMetrics::whole`] writes them as rows of [`LifetimeMetrics::summary`].
     #[serde(default, deserialize_with = "readings_of_rows")]
     pub readings: IndexMap<String, Reading>,
-    /// The contrasts of transfer of each task if only ratios were requested. Not in the JSON, which has the reference's fields.
+    /// The transfer contrasts of each task, if only ratios were requested. Not in the JSON, which has only the reference's fields.
     #[serde(default)]
     pub contrasts: IndexMap<String, Values>,
-    /// The evaluation results of each task, in the log's unit. Not in the JSON, which has the reference's fields.
+    /// The evaluation results of each task, in the log's unit. Not in the JSON, which has only the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,
-    /// Measures of each task's evaluation curve, regardless of boundaries between tasks. Not in the JSON, which has the
+    /// Measures of each task's evaluation curve, regardless of boundaries between tasks. Not in the JSON, which has only the
     /// reference's fields.
     #[serde(default)]
     pub curves: IndexMap<String, EvaluationCurve>,
     /// Warnings about tasks that were never learned, and about experts that are not comparable. Not in the JSON, which has
-    /// the reference's fields.
+    /// only the reference's fields.
     #[serde(default)]
     pub cautions: Vec<String>,
-    /// The experts' training compared with the lifetime's, by task. Not in the JSON, which has the reference's fields.
+    /// The experts' training compared with the lifetime's, by task. Not in the JSON, which has only the reference's fields.
     #[serde(default, rename = "experts")]
     pub expert_fits: IndexMap<String, Vec<ExpertFit>>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
@@ -84,8 +85,8 @@ pub struct LifetimeMetrics {
     /// The values of each regime, in order; not in the JSON.
     #[serde(skip)]
     pub regimes: Vec<RegimeMetrics>,
-    /// The names of the values of a lifetime, in order. Not in the JSON: a lifetime that was read back has those of the
-    /// built-in metrics.
+    /// The names of the values of a lifetime, in order. Not in the JSON: a lifetime read from JSON has those of the built-in
+    /// metrics.
     #[serde(skip, default = "crate::score::built_in_headlines")]
     pub headlines: Vec<Headline>,
     /// The definitions it was scored with; in the JSON only if they are not the reference's.
@@ -105,8 +106,8 @@ fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<Strin
 }
 
 impl Serialize for LifetimeMetrics {
-    /// QUIRK: the values of the lifetime have ten decimals, as in the reference's file; those of tasks, and all under the
-    /// published definitions, are not rounded.
+    /// QUIRK: the values of the lifetime have ten decimals, as in the reference's file. Those of tasks are not rounded, and
+    /// under the published definitions no value is.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rounded = |number: f64| match self.definitions {
             Definitions::Reference => ten_decimals(number),
@@ -170,7 +171,8 @@ pub struct SummaryRow {
     pub explanation: Cow<'static, str>,
     /// The good direction.
     pub good: Direction,
-    /// Its null band: the range if the agent had never changed; `None` for a metric that permuting evaluations cannot test.
+    /// Its null band: the values to expect if the agent had never changed; `None` for a metric that cannot be tested by
+    /// permuting evaluations.
     pub null_band: Option<NullBand>,
     /// The reading of the value; `None` for a metric without a neutral value.
     pub reading: Option<Reading>,
@@ -211,20 +213,20 @@ impl LifetimeMetrics {
         self.shown_headlines().into_iter().map(row).collect()
     }
 
-    /// The lifetime's value of a metric, or of a contrast of transfer that was not requested.
+    /// The lifetime's value of a metric, or of a transfer contrast that was not requested.
     pub(super) fn number(&self, name: &str) -> Option<f64> {
         let requested = self.lifetime.number(name);
         requested.or_else(|| Some(self.null_bands.get(name)?.value))
     }
 
-    /// The values of tasks, or of pairs of tasks, behind the lifetime's value of a metric, or of a contrast of transfer that
-    /// was not requested.
+    /// The values of tasks, or of pairs of tasks, behind the lifetime's value of a metric, or of a transfer contrast that was
+    /// not requested.
     pub fn parts(&self, name: &str) -> Vec<Part<'_>> {
         parts(&self.task_metrics, &self.contrasts, name)
     }
 
-    /// The values of a metric from a learned task to every other, in order of the later evaluation; also those of a
-    /// contrast of transfer that was not requested.
+    /// The values of a metric from a learned task to every other, in order of the later evaluation; also those of a transfer
+    /// contrast that was not requested.
     pub fn pairs(&self, task: &str, name: &str) -> Option<&PairValues> {
         pairs(&self.task_metrics, &self.contrasts, task, name)
     }
@@ -278,10 +280,10 @@ pub(crate) fn parts<'a>(
     found
 }
 
-/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of each metric that has a value in the table
-/// of the lifetime; `null`, the null bands; `contrasts`, those of transfer between tasks if only ratios were requested;
+/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of the lifetime's table for each metric that
+/// has a value; `null`, the null bands; `contrasts`, the transfer contrasts between tasks if only ratios were requested;
 /// `reached`, the evaluation results of each task; `curves`, the measures of each evaluation curve; `cautions`, if
-/// there are any; and `experts`, whether the experts are comparable, if there are any.
+/// there are any; and `experts`, which compares the experts' training with the lifetime's, if there are experts.
 #[derive(Debug, Clone, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! Null bands: the range of a value if the agent had never changed, and the reading that follows.
+//! Null bands: the range of values to expect if the agent had never changed, and the resulting reading.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,12 +27,13 @@ pub struct NullBand {
     pub low: f64,
     /// Upper end of the central 95 % of permuted values.
     pub high: f64,
-    /// Two-sided p-value: twice the smaller share of values at least as low or as high, its own included; at most 1.
+    /// Two-sided p-value: twice the smaller of the shares of values at least as low and at least as high, including its own;
+    /// at most 1.
     pub p: f64,
     /// The unit of permutation.
     pub exchanged: Exchanged,
-    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: other worlds
-    /// would give other scores. `None` if one of them is unknown, or there are more than 2,000 evaluations.
+    /// Standard error of the value, from the errors of its evaluations over worlds, taken as independent: different worlds
+    /// would give different scores. `None` if one of them is unknown, or there are more than 2,000 evaluations.
     #[serde(default)]
     pub standard_error: Option<f64>,
 }
@@ -67,13 +68,13 @@ impl NullBand {
         self.value < self.low - slack || self.value > self.high + slack
     }
 
-    /// Whether the value is within two of its standard errors of no effect; `None` if one of these is unknown.
+    /// Whether the value is within two standard errors of the neutral value; `None` if either is unknown.
     pub fn is_within_two_errors(&self, good: Direction) -> Option<bool> {
         Some((self.value - good.neutral()?).abs() < 2.0 * self.standard_error?)
     }
 
-    /// The reading by the band alone, for this good direction: good or bad if the value lies outside the band, `p` is at most
-    /// 0.05, and it is on that side of no effect by two of its standard errors, if these are known.
+    /// The reading from the band alone, given the good direction: good or bad if the value lies outside the band, `p` is at most
+    /// 0.05, and the value is on that side of the neutral value, by at least two standard errors if its error is known.
     pub fn reading(&self, good: Direction) -> Reading {
         let is_noise = !self.is_outside() || self.p > MAX_P_VALUE || self.is_within_two_errors(good) == Some(true);
         if is_noise {
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn good_requires_values_outside_the_band_and_beyond_no_effect() {
+    fn good_requires_values_outside_the_band_and_beyond_the_neutral_value() {
         let check = |value: f64, good: Direction, expected: Reading| {
             assert_eq!(band(value).reading(good), expected, "{value} {good:?}");
         };

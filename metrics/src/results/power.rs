@@ -18,10 +18,10 @@ pub struct MetricPower {
     pub deviations: [f64; 2],
     /// Lifetimes of each agent that have a value.
     pub lifetimes: [usize; 2],
-    /// The difference between means in question, in the metric's unit.
+    /// The difference between means that is to be shown, in the metric's unit.
     pub effect: f64,
     /// The chance that the given lifetimes show that difference, 0..=1; `None` if the lifetimes do not vary: then no test is
-    /// possible, and the next two are `None` as well.
+    /// possible, and the next two fields are `None` as well.
     pub power: Option<f64>,
     /// Lifetimes per agent that show it with a chance of 80 %; `None` for more than 100,000.
     pub lifetimes_needed: Option<usize>,

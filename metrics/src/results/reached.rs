@@ -44,9 +44,10 @@ pub struct Reached {
     /// without an expert the task's ceiling. `None` if neither is known.
     pub expert: Option<f64>,
     /// The best evaluation as a share of the expert's level: both measured from the task's floor, or else the lower end of the
-    /// given range, or else 0. `None` if one is missing, or the expert is not above that end.
+    /// given range, or else 0. `None` if one is missing, or the expert's level is not above that baseline.
     pub share: Option<f64>,
-    /// Like `share`, for the first evaluation after each time the task was learned, in order: how well it could still be learned.
+    /// Like `share`, for the first evaluation after each time the task was learned, in order: shows how well it could still be
+    /// learned.
     /// Empty if there are no such shares.
     #[serde(default)]
     pub shares: Vec<f64>,
@@ -117,7 +118,7 @@ impl Reached {
     }
 
     /// Whether the task is better after learning than in its first evaluation: if its expert's level is known, whether it was
-    /// learned, else whether the two evaluations differ by two standard errors. `None` if it was not evaluated after learning.
+    /// learned; otherwise whether the gain exceeds two standard errors. `None` if it was not evaluated after learning.
     pub fn has_gained(&self) -> Option<bool> {
         let (first, best) = (self.evaluations.first()?, self.best()?);
         if let Some(is_never_learned) = self.is_never_learned() {

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Direction, NullBand};
 use crate::repeats::Interval;
 
-/// Maximum p-value at which an effect is named.
+/// Maximum p-value at which an effect is reported.
 pub const MAX_P_VALUE: f64 = 0.05;
 
-/// Minimum share, by size, of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below
-/// it, the effect is mixed.
+/// Minimum share, by size, of the effects for tasks, or for pairs of tasks, that must have the same sign as the lifetime's
+/// effect; below it, the effect is mixed.
 pub const MIN_AGREEING_SHARE: f64 = 0.75;
 
 /// The reading of a metric's value.
@@ -67,8 +67,8 @@ impl Reading {
         })
     }
 
-    /// The reading of several lifetimes' values: good or bad if the interval over lifetimes lies on that side of no effect and,
-    /// for a metric that has one, the null band of their mean agrees. `None` as for one lifetime.
+    /// The reading of several lifetimes' values: good or bad if the interval over lifetimes lies on that side of the neutral value
+    /// and, for a metric that has one, the null band of their mean agrees. `None` as for one lifetime.
     pub fn of_lifetimes(good: Direction, band: Option<&NullBand>, interval: Option<Interval>) -> Option<Self> {
         let neutral = good.neutral()?;
         let Some(interval) = interval else {
@@ -163,8 +163,8 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn effect_is_named_only_beyond_noise(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
-            let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a value of no effect");
+        fn effect_is_reported_only_beyond_noise(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
+            let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a neutral value");
             if matches!(found, Reading::Good | Reading::Bad | Reading::Mixed) {
                 prop_assert!(band.is_outside() && band.p <= MAX_P_VALUE);
                 prop_assert!(band.standard_error.is_none_or(|error| band.value.abs() >= 2.0 * error));
@@ -186,8 +186,8 @@ mod tests {
         #[test]
         fn several_lifetimes_need_interval_and_band_to_agree(band in any_band(), ends in [-1.0..1.0, -1.0..1.0_f64]) {
             let interval = Interval { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
-            let alone = Reading::of_lifetimes(GOOD, None, Some(interval)).expect("there is a value of no effect");
-            let found = Reading::of_lifetimes(GOOD, Some(&band), Some(interval)).expect("there is a value of no effect");
+            let alone = Reading::of_lifetimes(GOOD, None, Some(interval)).expect("there is a neutral value");
+            let found = Reading::of_lifetimes(GOOD, Some(&band), Some(interval)).expect("there is a neutral value");
             prop_assert!(found == Reading::Unclear || found == alone && found == band.reading(GOOD));
             prop_assert_eq!(alone == Reading::Unclear, interval.contains(0.0));
         }

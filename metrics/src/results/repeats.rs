@@ -10,8 +10,8 @@ use crate::repeats::{
 use crate::statistics::mean;
 
 impl NullBand {
-    /// The band of a metric's mean over several lifetimes, from the means of the same permutations of each. Lifetimes without
-    /// bands, such as those that were read back, do not count; `None` if there are no others.
+    /// The band of a metric's mean over several lifetimes: for each permutation, the mean over the lifetimes. Lifetimes without
+    /// bands, such as those read from JSON, do not count; `None` if there are no others.
     ///
     /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share worlds or seeds.
     /// It has no standard error: the variation between lifetimes is in their intervals.
@@ -54,8 +54,8 @@ pub struct RepeatedMetric {
     pub num_runs: usize,
     /// Tasks that have a value; for transfer, pairs of tasks.
     pub num_strata: usize,
-    /// The null band of the metric's mean over lifetimes; `None` for a metric that permuting evaluations cannot test. Its
-    /// value differs from `mean` if lifetimes lack some tasks.
+    /// The null band of the metric's mean over lifetimes; `None` for a metric that cannot be tested by permuting evaluations.
+    /// Its value differs from `mean` if lifetimes lack some tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub null: Option<NullBand>,
     /// The reading of the metric; `None` without a neutral value.
@@ -82,7 +82,7 @@ pub struct ComparedMetric {
 /// Aggregates every metric that has a value in some lifetime over all lifetimes, in the order of the headlines.
 ///
 /// Variation is analysed task by task: a task's values in the lifetimes are one stratum; for transfer, the first values
-/// of a pair of tasks; for a metric that has values for lifetimes only, those values.
+/// of a pair of tasks; for a metric without values for tasks, the values of the lifetimes.
 ///
 /// # Errors
 /// Those of [`estimate`](crate::repeats::estimate()) and [`ScoreTable::from_runs`].
@@ -282,7 +282,7 @@ mod tests {
             let found = compare_agents(a, b, &BootstrapOptions::default()).unwrap();
             found[0].improvement.probability.value
         };
-        assert_eq!(probability(&good, &bad), 0.75, "always in one task, even in the other");
+        assert_eq!(probability(&good, &bad), 0.75, "1 in one task, 0.5 in the other");
         let turned = |lifetimes: &[LifetimeMetrics]| -> Vec<LifetimeMetrics> {
             let mut turned = lifetimes.to_vec();
             for lifetime in &mut turned {

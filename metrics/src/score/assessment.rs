@@ -73,7 +73,7 @@ impl<'a> Assessment<'a> {
         self.tasks.get(task)
     }
 
-    /// Terminal performance of a regime, if that metric was computed before.
+    /// Terminal performance of a regime, if that metric has already been computed.
     pub fn term_perf(&self, regime_num: usize) -> Option<f64> {
         self.regime(regime_num)?.number("term_perf")
     }

@@ -34,7 +34,7 @@ enum Unit {
 }
 
 impl<'a> Evaluations<'a> {
-    /// Collects the evaluations of a lifetime and of the log that it was prepared from.
+    /// Collects the evaluations of a lifetime, which must have been prepared from this log.
     pub(super) fn of(log: &Log, lifetime: &'a Lifetime) -> Self {
         let worlds = worlds(log, lifetime.regimes());
         let is_counted = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);

@@ -1,4 +1,4 @@
-//! Null bands: the range of a lifetime's metrics if the agent had never changed.
+//! Null bands: the values to expect of a lifetime's metrics if the agent had never changed.
 
 use indexmap::IndexMap;
 use rand_chacha::ChaCha8Rng;
@@ -24,8 +24,8 @@ pub(super) struct NullBands {
     pub(super) drawn: IndexMap<String, Vec<f64>>,
 }
 
-/// Null bands, by name, of the metrics that permuting evaluations can test: maintenance if requested, transfer as a contrast,
-/// and as a ratio if requested. `term_perfs` are the lifetime's terminal performances, by regime number.
+/// Null bands, by name, of the metrics that can be tested by permuting evaluations: maintenance if requested, transfer as a
+/// contrast, and as a ratio if requested. `term_perfs` are the lifetime's terminal performances, by regime number.
 ///
 /// If an agent never changes, its rewards in one world are exchangeable between evaluations. So the rows of each world are
 /// permuted among the evaluations of their task, and every metric is recomputed. Performances are permuted as scored: scaling

@@ -93,7 +93,7 @@ struct Difference {
 }
 
 impl Difference {
-    #[expect(clippy::unnecessary_wraps, reason = "same signature as `mrtlp`, which may have none")]
+    #[expect(clippy::unnecessary_wraps, reason = "same signature as `mrtlp`, which may be `None`")]
     fn mrlep(&self, term_perfs: &[f64]) -> Option<f64> {
         Some(term_perfs[self.evaluation] - term_perfs[self.reference])
     }

@@ -15,8 +15,8 @@ use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime with the metrics of this crate, comparing it with the given single-task experts.
 ///
-/// A value that cannot be computed, for lack of experts, of evaluations between learning blocks, or of a second learning block,
-/// is absent and never NaN.
+/// A value that cannot be computed, for lack of experts, evaluations between learning blocks or a second learning block, is
+/// absent, never NaN.
 ///
 /// # Errors
 /// Those of [`Lifetime::prepare`].
@@ -80,7 +80,7 @@ impl Scorer {
         self.judge(log, &Lifetime::prepare(log, experts, options)?, options)
     }
 
-    /// Scores a lifetime that was already prepared from `log` with `options`, for callers that use both.
+    /// Scores a lifetime that was already prepared from `log` with `options`, for callers that need the prepared lifetime too.
     ///
     /// # Errors
     /// Those of the metrics; [`MetricsError::BadOption`] if one set a value whose name the result files use for something else.
@@ -206,7 +206,7 @@ fn never_learned(
         return None;
     }
     let mut parts = vec![format!(
-        "never learned (below {:.0}% of the expert): {}: their maintenance and transfer say nothing",
+        "never learned (below {:.0}% of the expert): {}: ignore their maintenance and transfer",
         100.0 * LEARNED_SHARE,
         never_learned_tasks.join(", ")
     )];
@@ -216,7 +216,7 @@ fn never_learned(
         let has_any = tasks.values().any(|values| values.number(name).is_some());
         match aggregate(values, options) {
             Some(value) => parts.push(format!("{name} of the others: {value:.3}")),
-            None if has_any => parts.push(format!("{name} is of tasks never learned alone")),
+            None if has_any => parts.push(format!("{name} is based on never-learned tasks only")),
             None => {}
         }
     }
@@ -247,8 +247,8 @@ fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, Metrics
     }
     Ok((!differing.is_empty()).then(|| {
         format!(
-            "rounding alone decides between performances that differ by less than a billionth (in brackets: what comes out where \
-             these count as equal): {}",
+            "rounding alone decides between performances that differ by less than a billionth (in brackets: the value if these \
+             count as equal): {}",
             differing.join(", ")
         )
     }))
@@ -283,7 +283,7 @@ const RESERVED: [&str; 22] = [
 /// Field names of a task in the results that no value of a task may use.
 const EXTENT: [&str; 4] = ["min", "max", "num_lx", "num_ex"];
 
-/// Checks that no metric set a value whose name the results use for something else; the name would occur twice.
+/// Checks that no metric set a value whose name the results use for something else: the name would then occur twice.
 fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
     match values.iter().find(|(name, _)| is_taken(name)) {
         Some((name, _)) => Err(MetricsError::bad_option(

@@ -37,8 +37,8 @@ impl Metric for SteRelativePerformance {
     }
 }
 
-/// A caution about tasks in which the lifetime or an expert gathered 0 or less in total. A ratio is meaningless there, and of two
-/// losses the larger one looks better; the caution states the difference of the means, which is meaningful.
+/// A caution about tasks in which the lifetime or an expert gathered 0 or less in total. A ratio is meaningless there, and the
+/// larger of two losses looks better; the caution states the difference of the means, which is meaningful.
 pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     let mut found = Vec::new();
     for task in lifetime.tasks() {
@@ -57,8 +57,8 @@ pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     }
     (!found.is_empty()).then(|| {
         format!(
-            "performances that add up to 0 or less: ste_rel_perf and sample_efficiency say nothing of these tasks, and of \
-             two losses the larger looks better; lifetime less expert in the mean: {}",
+            "performances that add up to 0 or less: ste_rel_perf and sample_efficiency are meaningless for these tasks, and \
+             the larger of two losses looks better; mean of the lifetime minus mean of the expert: {}",
             found.join(", ")
         )
     })
@@ -146,9 +146,9 @@ mod tests {
             }
         };
         // -20 divided by -10 is 2, which is above 1 although it is twice the loss.
-        check(-20.0, -10.0, Some("in the mean: a_1 -10.000"));
-        check(20.0, -10.0, Some("in the mean: a_1 30.000"));
-        check(-20.0, 10.0, Some("in the mean: a_1 -30.000"));
+        check(-20.0, -10.0, Some("mean of the expert: a_1 -10.000"));
+        check(20.0, -10.0, Some("mean of the expert: a_1 30.000"));
+        check(-20.0, 10.0, Some("mean of the expert: a_1 -30.000"));
         check(20.0, 10.0, None);
     }
 }

@@ -157,9 +157,9 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 
 /// All gaps of a lifetime, forward and backward.
 ///
-/// QUIRK: each later evaluation holds one value per direction. If several tasks were learned since the evaluation before, all
-/// of them contributed, but only the last pair in permutation order gets the value: tasks in the order in which they first
-/// appear among the assessed regimes. Under the published definitions, each of them gets the value.
+/// QUIRK: each later evaluation holds one value per direction. If several tasks were learned since the previous evaluation, all
+/// of them contributed, but only the last pair gets the value, where tasks are in the order in which they first appear among
+/// the assessed regimes. Under the published definitions, each of them gets the value.
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     let task_regimes = TaskRegimes::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
@@ -169,10 +169,10 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
             Definitions::Published => index,
         };
         for (&other, (learned, evaluated)) in task_regimes.tasks.iter().filter(|(other, _)| **other != trained) {
-            // A task that is never learned counts as learned after everything.
+            // A task that is never learned counts as learned after everything else.
             let first_learned = learned.first().copied().unwrap_or(usize::MAX);
             for pair in evaluated.windows(2) {
-                // If the task was first learned in between, in a drift, the change is due to learning the task itself, not to transfer.
+                // If the task was first learned in a drift between the two, the change is due to learning the task itself.
                 if pair[0] < first_learned && first_learned < pair[1] && task_regimes.drifts.contains(&first_learned) {
                     continue;
                 }

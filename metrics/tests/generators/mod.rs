@@ -88,7 +88,7 @@ pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
 
 /// One row of a lifetime, with the fields that scoring depends on.
 #[derive(Debug, Clone)]
-pub(crate) struct Lived {
+pub(crate) struct LifetimeRow {
     pub(crate) block_num: u64,
     pub(crate) exp_num: u64,
     pub(crate) block_type: BlockType,
@@ -105,7 +105,7 @@ fn performances(num: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f64>> 
 }
 
 /// Lifetimes of several blocks, some long enough to be smoothed; each experience is one row.
-pub(crate) fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
+pub(crate) fn lifetime() -> impl Strategy<Value = Vec<LifetimeRow>> {
     let subtype = prop_oneof![6 => Just(BlockSubtype::Wake), 1 => Just(BlockSubtype::Sleep)];
     let stretch = (
         prop::sample::select(BlockType::ALL),
@@ -120,7 +120,7 @@ pub(crate) fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
         for (block_type, block_subtype, task, performances, new_block) in stretches {
             block_num += u64::from(new_block);
             for performance in performances {
-                rows.push(Lived {
+                rows.push(LifetimeRow {
                     block_num,
                     exp_num,
                     block_type,
@@ -136,9 +136,9 @@ pub(crate) fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
 }
 
 /// A run of an expert in the first task.
-pub(crate) fn expert() -> impl Strategy<Value = Vec<Lived>> {
+pub(crate) fn expert() -> impl Strategy<Value = Vec<LifetimeRow>> {
     performances(1..40).prop_map(|performances| {
-        let row = |(exp_num, performance)| Lived {
+        let row = |(exp_num, performance)| LifetimeRow {
             block_num: 0,
             exp_num,
             block_type: BlockType::Train,
@@ -151,7 +151,7 @@ pub(crate) fn expert() -> impl Strategy<Value = Vec<Lived>> {
 }
 
 /// Writes a log whose rows, in the given order, go to the data file of their folder; the folder's name is the worker's.
-pub(crate) fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived, usize)>) {
+pub(crate) fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a LifetimeRow, usize)>) {
     fs::create_dir_all(dir).unwrap();
     fs::write(
         dir.join("logger_info.json"),
@@ -164,7 +164,7 @@ pub(crate) fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived,
         let text = files.entry(folder).or_insert_with(|| {
             "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\n".to_owned()
         });
-        let Lived {
+        let LifetimeRow {
             block_num,
             exp_num,
             block_type,

@@ -1,4 +1,4 @@
-"""Writes a small log with l2logger and its table by l2logger.aggregate: l2logger_aggregate/ and l2logger_aggregate.tsv beside this file.
+"""Writes a small log with l2logger, and its table with l2logger.aggregate: l2logger_aggregate/ and l2logger_aggregate.tsv here.
 
 Usage: L2DATA=<empty folder> python l2logger_aggregate.py
 Made with l2logger 1.8.2, pandas 2.3.3.

@@ -4,8 +4,8 @@ Usage: L2DATA=<empty folder> python l2metrics_ragged.py [NUMBER OF LIFETIMES [FI
 Made with l2metrics 3.1.0 and l2logger 1.8.2 under the versions that the JSON names; pandas below 3, which the package was written for.
 
 Unlike the lifetimes of `l2metrics_lifetimes.py`, ragged lifetimes have gaps in the numbers of experiences, interrupted experiences, a
-different worker for each block, cells with tabs, quotes and line ends, words for missing numbers, tasks without a variant beside tasks
-with one, experts of several variants of a task with several runs each, and expert logs that are ragged themselves.
+different worker for each block, cells with tabs, quotes and line breaks, words for missing numbers, tasks without a variant among
+tasks with one, experts of several variants of a task with several runs each, and expert logs that are ragged themselves.
 
 The reference takes the experts of a task's variants in the order in which the file system lists them, so lists with one value per expert
 must be compared as sets. Data files are listed by name here, because their order determines which of two workers' rows with one number

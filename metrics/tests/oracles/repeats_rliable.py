@@ -1,6 +1,6 @@
 """Computes aggregates, intervals and comparisons of random score tables with rliable; writes repeats_rliable.json beside this file.
 
-Usage: python repeats_rliable.py   (takes some minutes: rliable calls scipy for every stratum of every resample)
+Usage: python repeats_rliable.py   (takes a few minutes: rliable calls scipy for every stratum of every resample)
 Made with the versions that the JSON names. Scores are (runs, strata), as rliable takes them.
 
 Each end of an interval is given as its mean over several seeds of rliable's bootstrap.

@@ -26,7 +26,7 @@ def drawn_counts(num_runs):
 
 
 def probabilities(counts_a, counts_b, a, b):
-    """Share of drawn pairs that A wins, with ties as half; NaN where there is no pair: (resamples, strata)."""
+    """Share of drawn pairs that A wins, ties counted as half; NaN where there is no pair: (resamples, strata)."""
     columns = []
     for of_a, of_b in zip(a.T, b.T):
         has_a, has_b = ~np.isnan(of_a), ~np.isnan(of_b)
