@@ -219,7 +219,7 @@ pub enum CurriculumError {
         reason: String,
     },
     /// An experience number beyond the scenario's end.
-    #[error("found experience {found}, expected less than {total}, the experiences of the scenario")]
+    #[error("found experience {found}, expected less than {total}, the number of experiences in the scenario")]
     NoSuchExperience {
         /// The number.
         found: u64,
@@ -366,8 +366,8 @@ pub enum CurriculumError {
     },
     /// Recordings were lost.
     #[error(
-        "{}: found {found}, expected the {expected} bytes that were recorded: the file was removed, replaced or cut while the run went \
-         on; put it back, or go on without recordings",
+        "{}: found {found}, expected the {expected} bytes that were recorded: the file was removed, replaced or truncated \
+         during the run; put it back, or continue without recordings",
         path.shown()
     )]
     RecordingsLost {

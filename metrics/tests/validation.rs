@@ -31,7 +31,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
     let found = validate_log(dir);
     let plain = |text: String| text.replace(&dir.display().to_string(), "LOG").replace('\\', "/");
     // Reading refuses, or warns of, the faults that validation lists, with the same text.
-    let said = |problem: &MetricsError| problem.to_string();
+    let message = |problem: &MetricsError| problem.to_string();
     match read_log(dir) {
         Ok(log) => {
             let warned = |text: String| {
@@ -40,7 +40,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
                     .any(|warning| warning.to_string().starts_with(&text))
             };
             assert!(
-                found.problems.iter().map(said).all(warned),
+                found.problems.iter().map(message).all(warned),
                 "{found:?} {:?}",
                 log.warnings
             );
@@ -55,7 +55,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
             );
         }
         Err(error) => assert!(
-            found.problems.iter().any(|problem| said(problem) == said(&error)),
+            found.problems.iter().any(|problem| message(problem) == message(&error)),
             "{error}"
         ),
     }

@@ -139,7 +139,7 @@ impl Case<'_> {
         let worst = good.iter().max_by_key(|(_, count)| *count);
         let found = worst.map_or_else(
             || "no metric to calibrate: no variant is evaluated both before and after it is learned".to_owned(),
-            |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {max_good} is sampling"),
+            |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {max_good} may be chance"),
         );
         Ok((found, worst.map(|(_, count)| *count <= max_good)))
     }

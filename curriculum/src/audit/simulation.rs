@@ -1,4 +1,4 @@
-//! Writes the logs of simulated agents: a row for every experience of a plan, as in a real run, without drawing a world.
+//! Writes the logs of simulated agents: a row for every experience of a plan, as in a real run, without sampling any world.
 
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Single-task experts: for each variant of a lifetime a comparable scenario that learns only this variant.
+//! Single-task experts: for each variant of a lifetime, a comparable scenario that learns only this variant.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::CurriculumError;
 /// Their names are `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
 ///
 /// # Errors
-/// As [`design`](super::design); [`CurriculumError::SameName`] if two would have the same name.
+/// Those of [`design`](super::design); [`CurriculumError::SameName`] if two would have the same name.
 pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, CurriculumError> {
     if options.form != Some(ScenarioForm::Expert) {
         return experts_of(&design(variants, options)?);

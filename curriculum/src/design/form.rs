@@ -156,7 +156,7 @@ mod tests {
         check(&[0, 1, 2, 0, 1], &[2, 1, 0], &[1, 0, 2, 1, 0]);
         check(&[0, 1, 2, 0], &[0, 2, 1], &[0, 2, 1, 0]);
         check(&[0, 1, 2, 0, 1], &[2, 0, 1], &[2, 0, 1, 0, 1]);
-        // No other order avoids the same variant twice in a row.
+        // No other order avoids learning a variant twice in a row.
         check(&[0, 1, 0], &[1, 0], &[0, 1, 0]);
         check(&[0, 1], &[2, 1, 0], &[1, 0]);
         for order in [[0, 1], [0, 0], [1, 2]] {

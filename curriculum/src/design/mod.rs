@@ -137,7 +137,7 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 /// over an odd number of blocks have only one order.
 ///
 /// # Errors
-/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order`
+/// Those of [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order`
 /// that is not a permutation of the variants.
 pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) -> Result<Scenario, CurriculumError> {
     build(variants, options, Some(order))
@@ -159,7 +159,7 @@ fn build(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Re
             "chosen",
             variants.len(),
             options.blocks,
-            format!("a scenario of at most {MAX_REGIMES} regimes, not {regimes}: fewer variants, or fewer evaluations"),
+            format!("a scenario of at most {MAX_REGIMES} regimes, not {regimes}; use fewer variants or evaluations"),
         ));
     }
     let before = before_deployment(&variants[path[0]], options, &streams);

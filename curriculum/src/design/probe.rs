@@ -82,7 +82,7 @@ pub fn probe(
 ///
 /// # Errors
 /// [`CurriculumError::NotAlone`] for a variant that does not differ from the anchor and all other named ones in exactly this
-/// element; otherwise as [`probe`].
+/// element; otherwise those of [`probe`].
 pub fn probe_named(
     task: &str,
     named: &[Variant],

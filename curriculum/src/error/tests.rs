@@ -153,7 +153,7 @@ fn every_error_has_its_message() {
             source: driftworld_env::EnvError::Recording {
                 line: 3,
                 found: "the end of the file".into(),
-                expected: "a line end".into(),
+                expected: "a line ending".into(),
             },
         },
         CurriculumError::UnreadableRecordings(
@@ -173,11 +173,11 @@ fn every_error_has_its_message() {
         },
         CurriculumError::Log(MetricsError::LogExists("logs/run".into())),
     ];
-    let said: Vec<String> = errors
+    let messages: Vec<String> = errors
         .iter()
         .map(|error| format!("{}: {error}", error.code()))
         .collect();
-    insta::assert_snapshot!(said.join("\n"));
+    insta::assert_snapshot!(messages.join("\n"));
     let covered: BTreeSet<&str> = errors.iter().map(CurriculumError::code).collect();
     let all: BTreeSet<&str> = CurriculumError::VARIANTS.iter().copied().collect();
     assert_eq!(covered, all, "every code has a case here");

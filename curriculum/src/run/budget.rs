@@ -35,7 +35,7 @@ impl Budget {
         }
     }
 
-    /// The first experience, from `number` on, that the budgets allow.
+    /// The first experience at or after `number` that the budgets allow.
     pub(super) fn next(&mut self, plan: &Plan, mut number: u64) -> u64 {
         while number < plan.num_experiences() {
             let regime = plan.regime_of(number);

@@ -8,7 +8,7 @@ use super::episode::Experience;
 use super::gap::Gap;
 use super::planned::Planned;
 
-/// The metrics columns that are logged for every experience, besides those that the format requires.
+/// The metrics columns that are logged for every experience, in addition to those that the format requires.
 ///
 /// - `reward`: the sum of its rewards.
 /// - `success`: 1 if the world's success condition ended it, else 0.

@@ -27,7 +27,7 @@ pub struct Experience {
     pub success: bool,
     /// Its steps.
     pub steps: u32,
-    /// Simulated seconds that it took: steps × time step × `frame_skip`, at most the world's limit of seconds.
+    /// Simulated seconds that it took: steps × time step × `frame_skip`, at most the world's time limit.
     pub seconds: f64,
     /// Whether a step or time limit cut it off, as opposed to an event in the world.
     pub truncated: bool,
@@ -104,7 +104,7 @@ pub(super) fn run_episode(
     let steps = environment.num_steps();
     let world = environment.world();
     let step_seconds = world.agent_params.time_step * f64::from(world.agent_params.frame_skip.max(1));
-    // A limit of seconds cuts the last step short.
+    // A time limit cuts the last step short.
     let time_limit = if world.max_seconds > 0.0 {
         world.max_seconds
     } else {

@@ -15,7 +15,7 @@ const AHEAD: usize = 16;
 ///
 /// Items are started in order, each by a free worker. After an early end, items in progress are finished and dropped. If `work`
 /// panics, the panic resumes here when the item's result would be delivered; after an early end, it is dropped, too. If the
-/// system cannot provide threads, fewer do the work, or the calling thread alone.
+/// system cannot start all threads, the work is done by fewer, or by the calling thread alone.
 pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,

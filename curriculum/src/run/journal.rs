@@ -63,7 +63,7 @@ impl Journal {
     /// measured.
     ///
     /// # Errors
-    /// As [`Journal::create`].
+    /// Those of [`Journal::create`].
     pub(crate) fn simulated(folder: &Path, plan: &Plan) -> Result<Self, CurriculumError> {
         let columns = LoggerInfo::new(COLUMNS)?;
         let writer = LogWriter::create_unsynced(folder, &columns, &scenario_info(plan, "simulated"))?;
@@ -257,7 +257,7 @@ impl Journal {
         &self.summary
     }
 
-    /// How many experiences of the plan are done: those in the log, and those skipped because a budget was spent.
+    /// Number of experiences of the plan that are done: those in the log, and those skipped because a budget was spent.
     pub fn num_experiences(&self) -> u64 {
         self.next
     }

@@ -51,7 +51,7 @@ use worlds::Worlds;
 pub struct RunContext<'a> {
     /// Returns the current time.
     pub now: &'a mut dyn FnMut() -> Timestamp,
-    /// Called after each experience; may end the run there. The log keeps everything up to then.
+    /// Called after each experience; may end the run there. The log keeps everything up to that point.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
     /// Ends the run at the next step once it is set from elsewhere: experiences in progress leave no row.
     pub stop: &'a AtomicBool,
@@ -60,7 +60,7 @@ pub struct RunContext<'a> {
     /// How many independent experiences run in parallel. Changes no byte of the log.
     pub jobs: NonZeroUsize,
     /// How many evaluations of each block, chosen by the scenario's seeds, are repeated at its end, to check that a learning
-    /// agent is frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 disables the check. Changes no byte of the log.
+    /// agent is frozen there; [`REPEATED_EVALUATIONS`] is a good default, 0 disables the check. Changes no byte of the log.
     pub repeated_evaluations: usize,
 }
 
@@ -139,9 +139,9 @@ pub fn run(
     Ok(journal.summary().clone())
 }
 
-/// Lets a learning agent repeat the learning experiences among the first `done`, without logging: it then has the state that it
-/// had when the log held that many. For agents that do not save what they learned. Does nothing for an agent that does not
-/// learn. `Break` if it was stopped.
+/// Lets a learning agent repeat the learning experiences among the first `done`, without logging, to restore the state that it
+/// had after them. For agents that do not save what they learned. Does nothing for an agent that does not learn. `Break` if it
+/// was stopped.
 ///
 /// # Errors
 /// [`CurriculumError`] with block, regime and experience.

@@ -92,7 +92,7 @@ impl Plan {
     /// worlds are not an error.
     ///
     /// # Errors
-    /// As [`Plan::new`].
+    /// Those of [`Plan::new`].
     pub fn with_undrawable(
         scenario: &Scenario,
         sources: &mut Sources,
@@ -253,8 +253,8 @@ impl Plan {
         }
     }
 
-    /// The evaluations that are repeated at the end of the block of `from`, in ascending order: the first ones from
-    /// `from` on, or some chosen by the block's seeds.
+    /// The evaluations that are repeated at the end of the block of `from`, in ascending order: the first ones, starting
+    /// with `from`, or some chosen by the block's seeds.
     pub(super) fn repeated(&self, from: u64, repeats: Repeats) -> Vec<u64> {
         let index = self.regime_of(from);
         let planned = &self.regimes[index];

@@ -144,7 +144,7 @@ impl Recordings {
         let (kept, lines) = valid_prefix(&path, experience)?;
         let open = OpenOptions::new().append(true).create(true).open(&path);
         let mut file = open.map_err(failed(&path, "open this file"))?;
-        file.set_len(kept).map_err(failed(&path, "cut this file"))?;
+        file.set_len(kept).map_err(failed(&path, "truncate this file"))?;
         let mut length = kept;
         if kept == 0 {
             let header = RecordingLines::header();
@@ -165,7 +165,7 @@ impl Recordings {
 
 /// The number of bytes with recordings of experiences before this one, and the state to append after them.
 fn valid_prefix(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
-    // Opened directly, not by driftworld-files: it is our own file, and may have any length.
+    // Opened directly, not through driftworld-files: it is our own file, and may have any length.
     let file = match File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, RecordingLines::default())),
@@ -210,7 +210,7 @@ impl RecordingsFile {
     /// Like [`RecordingsFile::open`], for the file beside the rows of a block.
     ///
     /// # Errors
-    /// As [`RecordingsFile::open`].
+    /// Those of [`RecordingsFile::open`].
     pub fn of_block(log: &Path, worker: &str, block: (u64, BlockType)) -> Result<Option<Self>, CurriculumError> {
         let folder = log.join(worker).join(format!("{}-{}", block.0, block.1));
         Self::open(&folder.join(RECORDINGS_FILE))

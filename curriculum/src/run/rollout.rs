@@ -75,7 +75,7 @@ pub trait Rollout {
 /// worlds, without being logged again.
 ///
 /// # Errors
-/// [`CurriculumError`] as [`run`](super::run), and the errors of the rollout; all earlier experiences are in the log.
+/// Those of [`run`](super::run), and the rollout's own; all earlier experiences are in the log.
 /// [`CurriculumError::NotFrozen`] if the agent behaves differently when an evaluation is repeated.
 pub fn run_rollout<R: Rollout>(
     plan: &Plan,
