@@ -18,7 +18,7 @@ pub enum ReportError {
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 
-    /// An image has no pixels, or a number of them that does not match its size.
+    /// An image has no pixels, or its number of pixels does not match its size.
     #[error("picture: cannot be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
 
@@ -51,8 +51,8 @@ pub enum ReportError {
 
     /// The horizontal axis cannot count steps.
     #[error(
-        "log {run_id}: found no steps for every experience, expected the column episode_step_count with a number of 0 or more in \
-         each complete row; leave the unit at exp_num",
+        "log {run_id}: found no steps for every experience, expected the column episode_step_count with a non-negative number \
+         in each complete row; leave the unit at exp_num",
         run_id = one_line(run_id)
     )]
     NoSteps {
@@ -62,8 +62,8 @@ pub enum ReportError {
 
     /// Distances that do not match the lifetime.
     #[error(
-        "log {run_id}: found {found} distances, expected {expected}: one for each two neighbouring learning blocks, as \
-         neighbours() lists them",
+        "log {run_id}: found {found} distances, expected {expected}: one for each pair of neighbouring learning blocks, as \
+         listed by neighbours()",
         run_id = one_line(run_id)
     )]
     Distances {

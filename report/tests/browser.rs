@@ -123,7 +123,7 @@ fn decode(file: &Path) -> (usize, Vec<[u8; 3]>) {
 
 #[test]
 fn page_logs_no_console_messages() {
-    let Some(desk) = Desk::with(&Life::default().live().page()) else {
+    let Some(desk) = Desk::with(&Life::default().run().page()) else {
         return;
     };
     let (dom, console) = desk.dom("page.html");
@@ -199,7 +199,7 @@ fn page_fits_every_screen_width_and_its_text_is_legible() {
     };
     // The quick tier does not check this page by itself: the same lifetime is one of the two on the next page.
     if crate::tier::quick_or_full(false, true) {
-        check(&Life::default().live().page(), "5", "1");
+        check(&Life::default().run().page(), "5", "1");
     }
     check(&lifetimes::page_of_two(), "10", "4");
     let life = Life {
@@ -210,7 +210,7 @@ fn page_fits_every_screen_width_and_its_text_is_legible() {
         rounds: 1,
         ..Life::default()
     };
-    check(&life.live().page(), "5", "1");
+    check(&life.run().page(), "5", "1");
 }
 
 /// Height of the band reserved for each figure, in pixels.
@@ -220,7 +220,7 @@ const LEGEND: usize = 64;
 
 #[test]
 fn figures_are_drawn_in_both_colour_schemes_and_on_a_phone() {
-    let Some(desk) = Desk::with(&Life::default().live().page()) else {
+    let Some(desk) = Desk::with(&Life::default().run().page()) else {
         return;
     };
     // Each figure is shown alone in its own band, so that the rest of the page is not counted as its pixels.

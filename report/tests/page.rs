@@ -52,7 +52,7 @@ fn count(text: &str, part: &str) -> usize {
 
 #[test]
 fn page_is_well_formed_and_has_every_section() {
-    let page = Life::default().live().page();
+    let page = Life::default().run().page();
     assert_well_formed(&page);
     for title in [
         "Metrics",
@@ -94,10 +94,10 @@ fn display_names_are_shown_with_the_log_names_beside_them() {
         expert: false,
         ..Life::default()
     };
-    let lived = life.live();
+    let scored = life.run();
     let mut options = ChapterOptions::default();
     options.figures.names = [("find_red".to_owned(), "find_objects#red".to_owned())].into();
-    let chapters = vec![Chapter::write(&lived.lifetime, &lived.metrics, &options).unwrap()];
+    let chapters = vec![Chapter::write(&scored.lifetime, &scored.metrics, &options).unwrap()];
     let page = Report {
         chapters,
         ..Report::default()
@@ -118,7 +118,7 @@ fn display_names_are_shown_with_the_log_names_beside_them() {
 
 #[test]
 fn headings_never_skip_a_level() {
-    let page = Life::default().live().page();
+    let page = Life::default().run().page();
     let levels: Vec<usize> = tags(&page)
         .into_iter()
         .filter(|(name, closes)| !closes && name.len() == 2 && name.starts_with('h') && name != "hr")
@@ -131,7 +131,7 @@ fn headings_never_skip_a_level() {
 
 #[test]
 fn page_loads_no_resources_and_runs_no_scripts() {
-    let page = Life::default().live().page();
+    let page = Life::default().run().page();
     let without_namespace = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for part in [
         "http:",
@@ -159,14 +159,14 @@ fn hostile_names_are_escaped_on_the_page() {
         tasks: hostile.map(str::to_owned).to_vec(),
         ..Life::default()
     };
-    let lived = life.live();
-    let page = lived.page();
+    let scored = life.run();
+    let page = scored.page();
     assert_well_formed(&page);
     assert!(!page.contains("<script") && !page.contains("<b>a"), "tags are escaped");
     assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
     assert!(page.chars().all(|c| c == '\n' || !c.is_control()) && !page.contains('\u{202e}'));
     let options = FigureOptions::default();
-    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    let figures = Figures::of(&scored.lifetime, "reward", &options).unwrap();
     for figure in Figure::ALL {
         assert_well_formed(&figures.svg(figure).unwrap());
     }
@@ -175,7 +175,7 @@ fn hostile_names_are_escaped_on_the_page() {
 #[test]
 fn same_lifetime_gives_the_same_bytes() {
     let life = Life::default();
-    assert_eq!(life.live().page(), life.live().page());
+    assert_eq!(life.run().page(), life.run().page());
 }
 
 #[test]
@@ -212,12 +212,12 @@ fn page_without_experts_says_so() {
         expert: false,
         ..Life::default()
     };
-    let lived = life.live();
-    let page = lived.page();
+    let scored = life.run();
+    let page = scored.page();
     assert!(page.contains("nothing to compare with") && count(&page, "<figure>") == 4);
     let options = FigureOptions::default();
     assert!(
-        !Figures::of(&lived.lifetime, "reward", &options)
+        !Figures::of(&scored.lifetime, "reward", &options)
             .unwrap()
             .has(Figure::Experts)
     );
@@ -229,8 +229,8 @@ fn figures_in_steps_need_a_log_with_steps() {
         unit: Unit::Steps,
         ..FigureOptions::default()
     };
-    let lived = Life::default().live();
-    let svg = Figures::of(&lived.lifetime, "reward", &options)
+    let scored = Life::default().run();
+    let svg = Figures::of(&scored.lifetime, "reward", &options)
         .unwrap()
         .svg(Figure::Learning)
         .unwrap();
@@ -239,17 +239,17 @@ fn figures_in_steps_need_a_log_with_steps() {
         steps: false,
         ..Life::default()
     };
-    let lived = life.live();
-    let error = Figures::of(&lived.lifetime, "reward", &options).err().unwrap();
+    let scored = life.run();
+    let error = Figures::of(&scored.lifetime, "reward", &options).err().unwrap();
     assert_eq!(error.code(), "report/no-steps");
     let options = FigureOptions {
         distances: Some(vec![None]),
         ..FigureOptions::default()
     };
-    let error = Figures::of(&lived.lifetime, "reward", &options).err().unwrap();
+    let error = Figures::of(&scored.lifetime, "reward", &options).err().unwrap();
     assert_eq!(
         error.to_string(),
-        "log first: found 1 distances, expected 8: one for each two neighbouring learning blocks, as neighbours() lists them"
+        "log first: found 1 distances, expected 8: one for each pair of neighbouring learning blocks, as listed by neighbours()"
     );
 }
 
@@ -261,8 +261,8 @@ fn few_variants_of_a_task_share_a_panel_and_many_do_not() {
             rounds: 1,
             ..Life::default()
         };
-        let (lived, options) = (life.live(), FigureOptions::default());
-        let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+        let (scored, options) = (life.run(), FigureOptions::default());
+        let figures = Figures::of(&scored.lifetime, "reward", &options).unwrap();
         // The name of the axis appears once in each panel.
         count(&figures.svg(Figure::Evaluation).unwrap(), "experience\n</text>")
     };
@@ -285,9 +285,9 @@ fn ink(figures: &Figures, figure: Figure, color: [u8; 3]) -> usize {
 
 #[test]
 fn figures_contain_the_colours_of_the_tasks() {
-    let lived = Life::default().live();
+    let scored = Life::default().run();
     let options = FigureOptions::default();
-    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    let figures = Figures::of(&scored.lifetime, "reward", &options).unwrap();
     for figure in Figure::ALL {
         let blue = ink(&figures, figure, [0, 114, 178]);
         assert!(blue > 400, "{figure:?}: {blue} pixels of the first task");
@@ -297,13 +297,13 @@ fn figures_contain_the_colours_of_the_tasks() {
 
 #[test]
 fn captions_describe_the_preprocessing() {
-    let lived = Life::default().live();
+    let scored = Life::default().run();
     let page = |smoothed: bool| {
         let options = ChapterOptions {
             smoothed,
             ..ChapterOptions::default()
         };
-        let chapters = vec![Chapter::write(&lived.lifetime, &lived.metrics, &options).unwrap()];
+        let chapters = vec![Chapter::write(&scored.lifetime, &scored.metrics, &options).unwrap()];
         let report = Report {
             chapters,
             options: serde_json::json!({ "smoothing_method": if smoothed { "flat" } else { "none" } }),
@@ -323,13 +323,13 @@ fn sleep_blocks_are_counted_consistently_and_mentioned() {
         sleeps: true,
         ..Life::default()
     };
-    let page = life.live().page();
+    let page = life.run().page();
     assert!(page.contains("<dd>18 (9 asleep)</dd>"), "the facts");
     let blocks = "<td class=\"number\">6</td><td class=\"number\">180</td>";
     assert_eq!(count(&page, blocks), 3, "the table of tasks");
     assert!(page.contains("Sleep blocks are drawn like the others: 9 of learning, 0 of evaluation."));
-    assert!(page.contains("This lifetime has sleep phases: evaluations while awake are drawn, but do not count for"));
-    assert!(!Life::default().live().page().contains("sleep"));
+    assert!(page.contains("This lifetime has sleep phases: evaluations while awake are drawn, but do not count"));
+    assert!(!Life::default().run().page().contains("sleep"));
 }
 
 #[test]
@@ -341,8 +341,8 @@ fn learning_blocks_of_one_experience_are_dots() {
         evaluated: false,
         ..Life::default()
     };
-    let (lived, options) = (life.live(), FigureOptions::default());
-    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    let (scored, options) = (life.run(), FigureOptions::default());
+    let figures = Figures::of(&scored.lifetime, "reward", &options).unwrap();
     for figure in [Figure::Learning, Figure::Raw] {
         for color in [[0, 114, 178], [230, 159, 0], [0, 158, 115]] {
             let found = ink(&figures, figure, color);
@@ -358,8 +358,8 @@ fn short_evaluations_of_a_long_lifetime_have_a_visible_area_in_the_raw_figure() 
         rounds: 100,
         ..Life::default()
     };
-    let (lived, options) = (life.live(), FigureOptions::default());
-    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    let (scored, options) = (life.run(), FigureOptions::default());
+    let figures = Figures::of(&scored.lifetime, "reward", &options).unwrap();
     let svg = figures.svg(Figure::Raw).unwrap();
     let outlines: Vec<&str> = (svg.split("<polygon").skip(1))
         .filter_map(|rest| rest.split("points=\"").nth(1)?.split('"').next())
@@ -381,7 +381,7 @@ fn short_evaluations_of_a_long_lifetime_have_a_visible_area_in_the_raw_figure() 
 #[test]
 fn pages_of_long_lifetimes_and_many_tasks_stay_small() {
     let check = |life: Life, limit: usize| {
-        let size = life.live().page().len();
+        let size = life.run().page().len();
         assert!(size < limit, "{size} bytes");
     };
     check(Life::default(), 500_000);

@@ -1,6 +1,6 @@
 //! Rasterises polygons, lines and circles, antialiased by the share of each pixel that they cover.
 
-#![expect(clippy::disallowed_methods, reason = "corners of shapes, rounded to what is drawn")]
+#![expect(clippy::disallowed_methods, reason = "the results are rounded to pixels")]
 
 use super::{Picture, Rgb};
 

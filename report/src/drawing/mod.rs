@@ -131,7 +131,7 @@ pub enum Shape {
         color: Rgb,
         /// Its opacity.
         alpha: f32,
-        /// Length of its dashes and of the gaps between; `None` for a solid line.
+        /// Length of its dashes and of the gaps between them; `None` for a solid line.
         dash: Option<f32>,
     },
     /// A filled circle.
@@ -147,7 +147,7 @@ pub enum Shape {
     },
     /// Text.
     Text(TextLine),
-    /// Another drawing, with its top left corner at `at`; parts outside it are cut off.
+    /// Another drawing, with its top left corner at `at`; anything beyond its edges is cut off.
     Inner {
         /// Pixels from the left and from the top.
         at: [u32; 2],

@@ -28,7 +28,7 @@ impl Gray {
     /// The image as a PNG file's bytes.
     ///
     /// # Errors
-    /// [`ReportError::Png`] for an image without pixels, or with a number of them that does not match its size.
+    /// [`ReportError::Png`] for an image without pixels, or whose number of pixels does not match its size.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         let bytes: Vec<u8> = self.levels.iter().flat_map(|level| level.to_be_bytes()).collect();
         let size = [self.width, self.height];
@@ -76,7 +76,7 @@ impl Picture {
         }
     }
 
-    /// The image at half the size, averaging each 2 × 2 pixels. This antialiases an image drawn at double size.
+    /// The image at half the size, averaging each 2 × 2 block of pixels. This antialiases an image drawn at double size.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
@@ -110,7 +110,7 @@ impl Picture {
     /// The image as a PNG file's bytes.
     ///
     /// # Errors
-    /// [`ReportError::Png`] for an image without pixels, or with a number of them that does not match its size.
+    /// [`ReportError::Png`] for an image without pixels, or whose number of pixels does not match its size.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         let size = [self.width, self.height];
         png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &self.rgb)

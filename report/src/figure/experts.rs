@@ -83,7 +83,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         let axes = Axes {
             x: 0.0..longest,
             y: y.clone(),
-            x_name: "experience of learning it",
+            x_name: "experience of learning the task",
             y_name: (&scene.names[panel.task], INK.light),
             labels: grid.labels(),
         };

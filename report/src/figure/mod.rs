@@ -86,7 +86,7 @@ impl<'a> Figures<'a> {
     /// Prepares a lifetime's figures. `column` is the name of its performance column.
     ///
     /// # Errors
-    /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] if there is not one distance
+    /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] unless there is one distance
     /// for each pair of [`neighbours`](crate::neighbours).
     pub fn of(lifetime: &'a Lifetime, column: &'a str, options: &'a FigureOptions) -> Result<Self, ReportError> {
         Ok(Self {

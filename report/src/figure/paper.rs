@@ -2,7 +2,7 @@
 
 #![expect(
     clippy::disallowed_methods,
-    reason = "ticks and arrows of a figure, rounded to what is drawn"
+    reason = "ticks and arrows of a figure, rounded to pixels"
 )]
 
 use std::ops::Range;
@@ -48,9 +48,9 @@ impl Entry {
         Self { name, sample }
     }
 
-    /// The entry that gives the number of things not drawn; `None` if all are. `noun` follows the number.
+    /// The entry that gives the number of things not drawn; `None` if all are. `noun` follows the number and "more".
     pub(super) fn rest(total: usize, drawn: usize, noun: &str) -> Option<Self> {
-        let rest = || Self::new(format!("and {}{noun} more, not drawn", total - drawn), Sample::Nothing);
+        let rest = || Self::new(format!("and {} more{noun}, not drawn", total - drawn), Sample::Nothing);
         (total > drawn).then(rest)
     }
 }

@@ -12,7 +12,7 @@ use super::paper::{Entry, Sample};
 use crate::words::shown;
 use crate::{ReportError, extent};
 
-/// Maximum number of tasks with curves; more could not be told apart.
+/// Maximum number of tasks with curves; more could not be distinguished.
 pub(super) const MAX_TASKS: usize = 28;
 /// Maximum number of stretches drawn, each as a line of its own; if there are more, they are thinned out.
 const MAX_STRETCHES: usize = 1200;

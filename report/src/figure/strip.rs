@@ -1,4 +1,4 @@
-//! Draws a metric as one mark per task on a line, with the lifetime's value and the value of no effect.
+//! Draws a metric as one mark per task on a line, with the lifetime's value and the neutral value.
 
 use plotters::prelude::*;
 
@@ -23,7 +23,7 @@ pub(crate) fn thinned_count(marks: usize) -> Option<String> {
 }
 
 /// Draws a mark for each of `tasks` (index in the lifetime's list, value), a stroke for the lifetime's value, and a dashed one for
-/// no effect.
+/// the neutral value.
 pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<f64>) -> Result<String, ReportError> {
     let all = || tasks.iter().map(|task| task.1).chain(value).chain(neutral);
     let (low, high) = extent(all());

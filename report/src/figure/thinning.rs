@@ -17,8 +17,8 @@ pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f
     thinned
 }
 
-/// The outline of a point cloud: along the highest point of each column, and back along the lowest. It is at least `least` high
-/// and wide, so that a single column becomes a vertical stroke.
+/// The outline of a point cloud: along the highest point of each column, and back along the lowest. It has at least the given
+/// width and height, so that a single column becomes a vertical stroke.
 pub(super) fn outline(
     points: &[(f64, f64)],
     column: impl Fn(f64) -> i64,

@@ -144,7 +144,7 @@ fn axis<DB: DrawingBackend>(
     )
 }
 
-/// Draws a stem at each change between learning blocks, as high as their distance, with the number if it fits.
+/// Draws a stem at each change between learning blocks, with a height proportional to their distance, and the number if it fits.
 fn draw_distances<DB: DrawingBackend>(
     area: &Area<DB>,
     scene: &Scene,

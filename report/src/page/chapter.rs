@@ -98,8 +98,8 @@ impl Chapter {
             "as logged, joined"
         };
         let asleep = when(!sleep_note.is_empty(), || {
-            " This lifetime has sleep phases: evaluations while awake are drawn, but do not count for maintenance, \
-             transfer and evaluation performance."
+            " This lifetime has sleep phases: evaluations while awake are drawn, but do not count towards maintenance, \
+             transfer or evaluation performance."
                 .to_owned()
         });
         let preprocessing = match (options.smoothed, lifetime.normalization_data_range().is_some()) {
@@ -124,13 +124,13 @@ impl Chapter {
             ))?)
             (figure(Figure::Evaluation, "Evaluations", &format!(
                 "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no \
-                 bar where all were equal or there was one only. The tint says when the task was learned.{asleep}"))?)
+                 bar where all were equal or there was only one. The tint shows when the task was learned.{asleep}"))?)
             (figure(Figure::Experts, "Against the single-task expert",
                 "The learning blocks of each task end to end, with vertical lines between them, against agents that \
                  learned only this task. Where a curve is above the expert's, this agent performs better after the \
                  same amount of learning.")?)
             (figure(Figure::Raw, "Raw values",
-                &format!("As logged: points where there is room, the area they fill where there is none. Lines: \
+                &format!("As logged: points where there is room, otherwise the area that they cover. Lines: \
                      learning {line_note}."))?)
             h3 { "Tasks" }
             (task_table::table(lifetime, metrics, &options.figures.names))
@@ -172,7 +172,7 @@ fn failed(links: &[(String, String)]) -> Markup {
     html! {
         @if !links.is_empty() {
             p.note {
-                "Failed in the last evaluation, to play in the workbench: "
+                "Failed in the last evaluation; play in the workbench: "
                 @for (number, (words, address)) in links.iter().enumerate() {
                     @if number > 0 { " · " }
                     a href=(address) { (breakable(words)) }
@@ -206,7 +206,7 @@ fn sleep_note(lifetime: &Lifetime) -> String {
 /// The reason why a figure is missing.
 fn missing_reason(figure: Figure) -> &'static str {
     match figure {
-        Figure::Experts => "No single-task expert was given for any task learned, so there is nothing to compare with.",
+        Figure::Experts => "No single-task expert was given for any learned task, so there is nothing to compare with.",
         Figure::Evaluation => "The log has no evaluations.",
         _ => "The log has no learning.",
     }

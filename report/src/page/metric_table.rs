@@ -73,20 +73,20 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
         @if !metrics.null_bands.is_empty() {
             p.note {
                 "Null band: the central 95 % of values when the evaluation rows of each world are permuted across evaluations "
-                (NULL_PERMUTATIONS) " times, as if the agent never changed. “no null”: permuting evaluations does not test this metric. ±: the standard error over worlds."
+                (NULL_PERMUTATIONS) " times, as if the agent never changed. “no null”: this metric cannot be tested by permuting evaluations. ±: the standard error over worlds."
             }
         }
         @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (note_shown(note)) "." } }
         @if scaled {
             p.note {
-                @if has_anchors { "Tasks with a floor and a ceiling are scaled from these, to 1…101; others" }
+                @if has_anchors { "Tasks with a floor and a ceiling are scaled by these to 1…101; others" }
                 @else { "Tasks are scaled to 1…101, by default" }
                 " by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "
                 "above an expert. Compare the logged means above."
             }
         }
         p.note {
-            "Coloured marks: each task, for transfer each pair in the colour of the task learned. Vertical line: the lifetime's value. Dashes: no effect."
+            "Coloured marks: one per task; for transfer, one per pair, in the colour of the learned task. Vertical line: the lifetime's value. Dashed line: the neutral value (no effect)."
             @if !missing.is_empty() { " Not computed: " (missing.join("; ")) "." }
         }
     })
@@ -101,7 +101,7 @@ fn contrast_of(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The range of the value if the agent had never changed.
+/// The values to expect if the agent had never changed.
 pub(super) fn null_band(band: Option<NullBand>) -> Markup {
     html! {
         @if let Some(band) = band {
@@ -119,9 +119,9 @@ fn standard_error(band: Option<NullBand>) -> Option<String> {
 /// The sentence that explains how the words are chosen.
 fn reading_rule() -> String {
     format!(
-        "Words like “helps” need a value outside its null band, with p at most {MAX_P_VALUE}, that differs from no effect by at \
-         least two standard errors, if these are known. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of \
-         pairs of them, by size, are on the value’s side of no effect; “not tested”, that there is no null band.",
+        "Words like “helps” require a value outside its null band, with p at most {MAX_P_VALUE}, that differs from the neutral value \
+         by at least two standard errors, if these are known. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of \
+         pairs, by size, are on the lifetime’s side of the neutral value; “not tested” means that there is no null band.",
         100.0 * MIN_AGREEING_SHARE
     )
 }

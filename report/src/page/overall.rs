@@ -69,15 +69,15 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
             }
             @if rows.iter().any(|row| row.iqm.t_interval.is_some()) {
                 p.note {
-                    "t: Student’s t interval over lifetimes, which decides here. Below ten lifetimes, bootstrap intervals contain the true "
-                    "value less often than they claim. Student’s assumes normally distributed lifetimes."
+                    "t: Student’s t interval over lifetimes, on which the reading is based. With fewer than ten lifetimes, bootstrap "
+                    "intervals contain the true value less often than they claim. Student’s assumes normally distributed lifetimes."
                 }
             }
             @if rows.iter().any(|row| row.null.is_some()) {
                 p.note {
-                    "Words like “helps” need an interval without the value of no effect and, for maintenance and transfer, a mean \
+                    "Words like “helps” require an interval that excludes the neutral value and, for maintenance and transfer, a mean \
                      over lifetimes outside its null band, with p at most " (MAX_P_VALUE) ". Null band: as for one lifetime, \
-                     of all lifetimes together."
+                     over all lifetimes together."
                 }
             }
             @for (caution, names) in cautions(rows) {
@@ -134,12 +134,12 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
         h3 { (title) }
         @if !is_tested(comparison) {
             p.note {
-                "Below each agent: its value. One lifetime of each does not show which agent is better: run several, with other seeds."
+                "Below each agent: its value. One lifetime of each does not show which agent is better: run several, with different seeds."
             }
         } @else { p.note {
-            "Below each agent: the interquartile mean of its lifetimes. Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
+            "Below each agent: the interquartile mean of its lifetimes. Probability of improvement: the probability that a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
             "neither is better. In brackets: its " (percent) " bootstrap interval, and Student’s t interval for few lifetimes. p: how often two "
-            "equal agents would differ at least as much, by permuting lifetimes between them. Agents differ where p is at most "
+            "equal agents would differ at least this much, by permutation of their lifetimes. Agents count as different if p is at most "
             (short(1.0 - confidence, 2)) "."
         } }
         div.scroll role="region" aria-label=(title) tabindex="0" {

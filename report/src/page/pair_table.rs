@@ -37,7 +37,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics, display_names: &BTreeMap<String,
         @if !rows.is_empty() {
             h3 { "Transfer between tasks" }
             p.note {
-                "Row: the task that was learned. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learned, ● no clear difference, or the lifetime shows no clear effect."
+                "Row: the task that was learned. Column: the task that was evaluated before and after. Values are from the first time each pair occurs. ▲ better, ▼ worse after the row's task was learned, ● no clear difference, or the lifetime shows no clear effect."
             }
         }
         @for row in &rows {
@@ -62,7 +62,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics, display_names: &BTreeMap<String,
             }
         }
         @if tasks.len() > MAX_TASKS && !rows.is_empty() {
-            p.note { "The first " (MAX_TASKS) " tasks are shown; all are in the file of metrics." }
+            p.note { "The first " (MAX_TASKS) " tasks are shown; the metrics file has all of them." }
         }
     }
 }

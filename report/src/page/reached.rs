@@ -21,8 +21,8 @@ pub(super) fn section(title: &str, metrics: &LifetimeMetrics, display_names: &BT
             h3 { (title) }
             @if metrics.nothing_was_learned() {
                 ul.warnings aria-label="Nothing was learned" {
-                    li { "⚠ Nothing was learned: no task is better after it was learned than before. What is said of its \
-                          maintenance and transfer says nothing." }
+                    li { "⚠ Nothing was learned: no task is better after learning than before. Ignore the readings of \
+                          maintenance and transfer." }
                 }
             }
             div.scroll role="region" aria-label=(title) tabindex="0" {
@@ -56,7 +56,7 @@ pub(super) fn section(title: &str, metrics: &LifetimeMetrics, display_names: &BT
                 @if scaled { "In % of the way from floor to ceiling where these are known, else in the log's unit" }
                 @else { "In the log's unit" }
                 "; ± the standard error over worlds. “never learned”: below " (format!("{:.0}", 100.0 * LEARNED_SHARE)) " % of the expert, \
-                 or of the ceiling. Where neither is known, “gained” needs two standard errors between the first evaluation and the best."
+                 or of the ceiling. If neither is known, “gained” means more than two standard errors from the first evaluation to the best."
             }
         }
     }
@@ -74,7 +74,7 @@ fn averages(metrics: &LifetimeMetrics) -> Markup {
             p.note {
                 strong { "Average performance at the end (ACC): " (amount(last, is_scaled)) "; average forgetting: "
                     (amount(mean(|curve| curve.forgetting), is_scaled)) ". " }
-                "Forgetting: the best evaluation less the last (Chaudhry et al. 2018)."
+                "Forgetting: the best evaluation minus the last (Chaudhry et al. 2018)."
             }
         }
     }

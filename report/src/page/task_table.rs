@@ -1,4 +1,4 @@
-//! The table of tasks: how many experiences each was learned and evaluated for, and its scalar metrics.
+//! The table of tasks: for how many experiences each was learned and evaluated, and its scalar metrics.
 
 use std::collections::BTreeMap;
 

@@ -30,10 +30,10 @@ pub(super) fn pill(verdict: Verdict) -> Markup {
     html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }
 
-/// Minimum difference from no effect that is tinted in the table of pairs.
+/// Minimum difference from the neutral value that is tinted in the table of pairs.
 const MIN_PAIR_EFFECT: f64 = 0.05;
 
-/// The side of no effect on which a pair of tasks lies, if the metric over all pairs has an effect.
+/// Which side of the neutral value a pair of tasks lies on, if the metric over all pairs shows an effect.
 pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Reading {
     let has_effect = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
     let is_large_enough = good
@@ -64,8 +64,8 @@ pub(super) fn good_from(name: &str, direction: Direction) -> String {
 /// The closest measure in the literature, and how it differs.
 pub(super) fn in_papers(name: &str) -> Option<&'static str> {
     match name {
-        "avg_eval_perf" => Some("average performance over the lifetime; ACC, in the first table, is that at its end"),
-        "perf_maintenance_mrlep" => Some("BWT (Lopez-Paz and Ranzato 2017), but of all later evaluations"),
+        "avg_eval_perf" => Some("average performance over the lifetime; ACC, in the first table, is the final average"),
+        "perf_maintenance_mrlep" => Some("BWT (Lopez-Paz and Ranzato 2017), but over all later evaluations"),
         "forward_transfer_contrast" => Some("FWT (Lopez-Paz and Ranzato 2017), but as change over sum"),
         "backward_transfer_contrast" => Some("not BWT, which is maintenance: the effect on each task learned before"),
         _ => None,

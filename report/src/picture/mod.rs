@@ -36,7 +36,7 @@ fn font_size(height: f64) -> f32 {
 }
 
 /// The smallest of 1, 2, 5 and 10 times a power of ten that is at least the given number.
-#[expect(clippy::disallowed_methods, reason = "ticks of a figure, rounded to what is drawn")]
+#[expect(clippy::disallowed_methods, reason = "ticks of a figure, rounded to pixels")]
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);

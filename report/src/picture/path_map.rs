@@ -2,7 +2,7 @@
 
 #![expect(
     clippy::disallowed_methods,
-    reason = "ticks and arrows of a figure, rounded to what is drawn"
+    reason = "ticks and arrows of a figure, rounded to pixels"
 )]
 
 use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
@@ -55,7 +55,7 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
             ordering.mean_step()
         ),
         format!(
-            "From orange, the first, to blue, the last. The map is flat: it shows {:.0} % of how the distances vary.",
+            "From orange (first) to blue (last). The map is flat: it shows {:.0} % of the variation of the distances.",
             (100.0 * map.explained).floor()
         ),
     ];

@@ -125,7 +125,7 @@ impl Panel {
         let line = [x0, neutral - 2, x1, neutral + 2];
         let unnamed = self.name(picture, &dots, line, [x0, y0, x1, y1]);
         if unnamed > 0 {
-            let label = format!("{unnamed} of {} without room for a name", dots.len());
+            let label = format!("{unnamed} of {} names do not fit", dots.len());
             picture.write(words(label, (x1, y0 - 22), 16.0, FAINT).anchored(Side::Right, Level::Top));
         }
     }

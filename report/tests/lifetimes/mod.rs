@@ -44,14 +44,14 @@ impl Default for Life<'_> {
 }
 
 /// A lifetime with its scores.
-pub(crate) struct Lived {
+pub(crate) struct Scored {
     pub(crate) lifetime: Lifetime,
     pub(crate) metrics: LifetimeMetrics,
     pub(crate) options: Options,
 }
 
 impl Life<'_> {
-    pub(crate) fn live(&self) -> Lived {
+    pub(crate) fn run(&self) -> Scored {
         let base = tempfile::tempdir().expect("a temporary folder can be created");
         let dir = base.path().join(self.name);
         self.write(&dir, &self.tasks, self.rounds);
@@ -68,7 +68,7 @@ impl Life<'_> {
         let metrics = Scorer::default()
             .judge(&log, &lifetime, &options)
             .expect("it can be scored");
-        Lived {
+        Scored {
             lifetime,
             metrics,
             options,
@@ -123,7 +123,7 @@ impl Life<'_> {
     }
 }
 
-impl Lived {
+impl Scored {
     /// A page with this lifetime alone, including distances and a warning.
     pub(crate) fn page(&self) -> String {
         let mut options = ChapterOptions {
@@ -154,10 +154,10 @@ pub(crate) fn page_of_two() -> String {
             name,
             ..Life::default()
         };
-        life.live()
+        life.run()
     });
-    let scores: Vec<LifetimeMetrics> = lives.iter().map(|lived| lived.metrics.clone()).collect();
-    let chapter = |lived: &Lived| Chapter::write(&lived.lifetime, &lived.metrics, &ChapterOptions::default());
+    let scores: Vec<LifetimeMetrics> = lives.iter().map(|scored| scored.metrics.clone()).collect();
+    let chapter = |scored: &Scored| Chapter::write(&scored.lifetime, &scored.metrics, &ChapterOptions::default());
     let options = BootstrapOptions::default();
     let report = Report {
         title: Some("Two <lives>".to_owned()),
