@@ -56,7 +56,7 @@ pub(super) fn section(title: &str, metrics: &LifetimeMetrics, display_names: &BT
                 @if scaled { "In % of the way from floor to ceiling where these are known, else in the log's unit" }
                 @else { "In the log's unit" }
                 "; ± the standard error over worlds. “never learned”: below " (format!("{:.0}", 100.0 * LEARNED_SHARE)) " % of the expert, \
-                 or of the ceiling. If neither is known, “gained” means more than two standard errors from the first evaluation to the best."
+                 or of the ceiling. If neither is known, “gained” means more than two standard errors from the first to the best."
             }
         }
     }
