@@ -1,7 +1,7 @@
 //! The expert's paths: to the nearest of equal zones, around objects that cover part of a zone, and always forwards on open
 //! ground.
 
-use driftworld_spec::{Color, EndCondition, Object, WorldDraft, Zone, ZoneEnd};
+use driftworld_spec::{Color, EndCondition, MotionModel, Object, Stimulus, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
 
 use crate::fixtures::{by_expert, wall_of};
@@ -98,4 +98,24 @@ proptest! {
         });
         prop_assert!(end.success);
     }
+}
+
+/// Behind a wall with a gap too narrow for the agent, the goal is out of reach until it comes through.
+#[test]
+fn moving_goal_is_reached_once_it_enters_the_agents_room() {
+    let mut world = hall(Vec::new());
+    world.environment_params.walls = [[-12.0, -0.3], [0.3, 12.0]]
+        .map(|[west, east]| wall_of([[west, -0.2], [east, -0.2], [east, 0.2], [west, 0.2]]))
+        .to_vec();
+    let mut goal = Object::new("geometric", [0.0, 9.0]);
+    goal.scale = 0.2;
+    goal.reward = 1.0;
+    goal.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    goal.destroy_stimulus = vec![Stimulus::AgentCollide];
+    goal.motion_model = MotionModel::Patrol;
+    goal.speed = 1.0;
+    goal.waypoints = vec![[0.0, 9.0], [0.0, -3.0], [9.0, -3.0]];
+    world.objects.push(goal);
+    world.rules.success = vec![EndCondition::ReturnAtLeast(1.0)];
+    assert!(length(world).is_some_and(|metres| metres > 0.5));
 }

@@ -2,7 +2,7 @@
 
 use driftworld_spec::Object;
 
-use super::planner::{Act, Planner};
+use super::planner::{Act, Planner, can_interact};
 use super::script::{Command, Until, parse};
 use super::steering::in_space;
 use super::{Agent, OnRailsAgent};
@@ -61,7 +61,7 @@ struct Walk {
     object: u32,
     /// The object's state when the walk began.
     before: ObjectState,
-    /// Number of steps in which the agent has interacted within reach.
+    /// Number of steps in which the agent has interacted within reach, or touched it if it cannot interact.
     num_interactions: u32,
 }
 
@@ -129,7 +129,8 @@ impl ScriptedAgent {
             Until::Near(_) => Act::Near,
         };
         let numbers = self.planner.approach(sim, walk.object, act);
-        walk.num_interactions += u32::from(numbers[2] > 0.5);
+        let pushes = !can_interact(sim.world) && sim.state.touches(walk.object as usize);
+        walk.num_interactions += u32::from(numbers[2] > 0.5 || pushes);
         Some(numbers)
     }
 }
@@ -256,6 +257,17 @@ mod tests {
     fn interact_sets_off_a_switch_that_touch_does_not() {
         assert_eq!(play(world(), "touch switch", 60).0, 0.0);
         assert_eq!(play(world(), "interact switch", 60).0, 1.0);
+    }
+
+    #[test]
+    fn interact_ends_where_the_agent_cannot_interact() {
+        let world = world().edit(|world| world.agent_params.interact = false);
+        let (_, at) = play(
+            world.expect("the world is valid"),
+            "interact switch\nstep 30 -10 0 0",
+            60,
+        );
+        assert!(at[0] > 0.0, "{at:?}");
     }
 
     #[test]

@@ -18,11 +18,13 @@ pub(super) struct Flood {
     buckets: Vec<Vec<u32>>,
     next: u32,
     num_waiting: usize,
+    /// Whether paths lead away from the first cells, instead of to them.
+    is_outward: bool,
 }
 
 impl Flood {
-    /// Restarts from these cells.
-    pub(super) fn begin(&mut self, floor: &Floor, starts: &[u32]) {
+    /// Restarts from these cells, with paths to them or away from them.
+    pub(super) fn begin(&mut self, floor: &Floor, starts: &[u32], is_outward: bool) {
         self.cost.clear();
         self.cost.resize(floor.grid.num_cells(), u32::MAX);
         // More buckets than the highest cost, so that queued cells are never a full round ahead.
@@ -33,7 +35,7 @@ impl Flood {
             self.cost[*start as usize] = 0;
         }
         self.buckets[0].extend(starts);
-        (self.next, self.num_waiting) = (0, starts.len());
+        (self.next, self.num_waiting, self.is_outward) = (0, starts.len(), is_outward);
     }
 
     /// The cost of a cell: final, or the lowest so far; `u32::MAX` if there is none yet.
@@ -73,7 +75,7 @@ impl Flood {
                 if here + open >= known {
                     continue;
                 }
-                let Some(cost) = floor.cost(cell, step, open) else {
+                let Some(cost) = floor.cost(cell, step, open, self.is_outward) else {
                     continue;
                 };
                 let through = here + cost;
@@ -99,6 +101,7 @@ mod tests {
 
     use super::*;
     use crate::agents::grid::Grid;
+    use crate::agents::planner::zone_costs::ZoneCosts;
 
     proptest! {
         #[test]
@@ -125,7 +128,7 @@ mod tests {
                 for cell in inside.iter().copied().filter(|cell| expected[*cell] < u32::MAX).collect::<Vec<_>>() {
                     for (step, is_diagonal) in grid.around() {
                         let other = cell.wrapping_add_signed(step);
-                        if let Some(cost) = floor.cost(cell, step, if is_diagonal { DIAGONAL } else { STRAIGHT }) {
+                        if let Some(cost) = floor.cost(cell, step, if is_diagonal { DIAGONAL } else { STRAIGHT }, false) {
                             expected[other] = expected[other].min(expected[cell] + cost);
                         }
                     }
@@ -133,10 +136,34 @@ mod tests {
             }
             // The cost is final, regardless of earlier queries.
             let mut flood = Flood::default();
-            flood.begin(&floor, &starts.iter().map(|start| *start as u32).collect::<Vec<_>>());
+            flood.begin(&floor, &starts.iter().map(|start| *start as u32).collect::<Vec<_>>(), false);
             for cell in order.into_iter().map(|number| inside[number]) {
                 prop_assert_eq!(flood.reach(&floor, cell), expected[cell]);
             }
+        }
+
+        /// On even ground, only entering zones tells the two directions apart.
+        #[test]
+        fn path_costs_the_same_from_either_end(
+            entering in vec(prop_oneof![Just(0_u32), 1_u32..40], 80),
+            ends in [0_usize..80, 0_usize..80],
+        ) {
+            let grid = Grid::over([-2.5, -2.0], [2.5, 2.0], 0.5);
+            let inside: Vec<usize> = grid.within([-2.5, -2.0], [2.5, 2.0]).collect();
+            let (mut weights, mut costs) = (vec![0; grid.num_cells()], vec![0; grid.num_cells()]);
+            for (cell, cost) in inside.iter().zip(entering) {
+                (weights[*cell], costs[*cell]) = (1, cost);
+            }
+            let mut floor = Floor::of(grid, weights);
+            floor.zone_costs = ZoneCosts::of_entering(costs);
+            floor.max_cost += floor.zone_costs.max_entry();
+            let [start, end] = ends.map(|number| inside[number]);
+            let cost = |from: usize, to: usize, is_outward| {
+                let mut flood = Flood::default();
+                flood.begin(&floor, &[from as u32], is_outward);
+                flood.reach(&floor, to)
+            };
+            prop_assert_eq!(cost(start, end, true), cost(end, start, false));
         }
     }
 }

@@ -97,12 +97,13 @@ impl Floor {
     }
 
     /// The cost of spreading from a cell to its neighbour at this offset, where a step on open ground costs `open`; `None` if no
-    /// step leads from there. Floods spread against the walk.
-    pub(super) fn cost(&self, from: usize, step: isize, open: u32) -> Option<u32> {
+    /// step leads from there. Floods spread against the walk, or outward with it.
+    pub(super) fn cost(&self, from: usize, step: isize, open: u32, is_outward: bool) -> Option<u32> {
         let other = from.wrapping_add_signed(step);
         let weight = u32::from(self.weight[other]);
         let is_walked = weight > 0 && (open == STRAIGHT || self.is_corner_open(from, step));
-        is_walked.then(|| open * weight + self.zone_costs.of(other, from))
+        let [start, end] = if is_outward { [from, other] } else { [other, from] };
+        is_walked.then(|| open * weight + self.zone_costs.of(start, end))
     }
 
     /// Updates the floor to the current positions of objects. Pushable objects are obstacles only if paths should lead around
@@ -342,17 +343,16 @@ impl Floor {
     }
 }
 
-/// Whether an object moves by itself or can be pushed.
-pub(super) fn can_move(object: &Object) -> bool {
-    object.motion_model != MotionModel::Stationary || object.pushable.is_some()
+/// Whether an object moves by itself, can be pushed, or respawns elsewhere.
+pub(super) fn moves_elsewhere(object: &Object) -> bool {
+    let respawns_elsewhere = object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
+    object.motion_model != MotionModel::Stationary || object.pushable.is_some() || respawns_elsewhere
 }
 
 /// The part of the arena that matters: around everything in the world. All of it if something may move away.
 fn region(world: &World, arena_size: [f32; 2]) -> [[f32; 2]; 2] {
     let half = arena_size.map(|metres| metres / 2.0);
-    let respawns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
-    let leaves = |object: &Object| can_move(object) || respawns_elsewhere(object);
-    if world.plan().is_none() && world.objects.iter().any(leaves) {
+    if world.plan().is_none() && world.objects.iter().any(moves_elsewhere) {
         return [half.map(|metres| -metres), half];
     }
     let margin = 3.0 + world.agent_params.agent_width as f32;

@@ -143,7 +143,7 @@ fn due_goals<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>> {
 }
 
 /// Whether the agent can interact at all.
-pub(super) fn can_interact(world: &World) -> bool {
+pub(in crate::agents) fn can_interact(world: &World) -> bool {
     let agent = &world.agent_params;
     let has_row = match &agent.actions {
         ActionSpace::Discrete(table) => {

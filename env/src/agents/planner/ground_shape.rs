@@ -10,7 +10,7 @@ const ROUGH: f32 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GroundShape {
     pub(super) at: [f32; 2],
-    /// Sine and cosine of its heading.
+    /// Sine and cosine of its heading; 0 and 1 for a disc.
     turn: [f32; 2],
     /// Half its width and depth; 0 for a disc.
     pub(super) half: [f32; 2],
@@ -21,13 +21,17 @@ impl GroundShape {
     pub(super) fn of(sim: SimRef, object: usize) -> Self {
         let (item, own) = (&sim.scene().items[object], &sim.objects()[object]);
         let heading = own.heading_deg.to_radians();
-        let (half, radius) = match &item.body.collider {
-            ColliderShape::Box { half: [x, y, _] } => ([x * item.scale, y * item.scale], 0.0),
-            other => ([0.0; 2], other.radius() * item.scale),
+        let (turn, half, radius) = match &item.body.collider {
+            ColliderShape::Box { half: [x, y, _] } => (
+                [libm::sinf(heading), libm::cosf(heading)],
+                [x * item.scale, y * item.scale],
+                0.0,
+            ),
+            other => ([0.0, 1.0], [0.0; 2], other.radius() * item.scale),
         };
         Self {
             at: own.position,
-            turn: [libm::sinf(heading), libm::cosf(heading)],
+            turn,
             half,
             radius,
         }

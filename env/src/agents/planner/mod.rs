@@ -17,7 +17,8 @@ mod zone_costs;
 
 use driftworld_spec::RailsProgress;
 
-use floor::{Floor, can_move};
+use floor::{Floor, moves_elsewhere};
+pub(super) use goals::can_interact;
 use goals::{Goal, goals};
 use plan::Plan;
 pub(super) use subgoal::Act;
@@ -65,8 +66,8 @@ struct Situation {
     version: u64,
     room: Option<u32>,
     target: Option<u32>,
-    /// The target's room, if the target can move.
-    target_room: Option<u32>,
+    /// The rooms of the target, or without one of all goals, that can move or respawn elsewhere.
+    rooms: Vec<Option<u32>>,
     /// For each door, whether it is unlocked.
     unlocked: Vec<bool>,
     carried: Vec<u32>,
@@ -122,6 +123,7 @@ impl Planner {
         }
         if subgoal.is_none() || budget_exhausted {
             if self.is_known_to_be_idle(sim, &goals) {
+                (progress.target, progress.steps_on_target) = (None, 0);
                 let subgoal = self.idle.as_ref().and_then(|(_, subgoal)| *subgoal);
                 return self.act(sim, subgoal, &mut progress.goal);
             }
@@ -267,7 +269,11 @@ impl Planner {
     }
 
     fn situation(&self, sim: SimRef, target: Option<u32>, goals: &[Vec<Goal>; 3]) -> Situation {
-        let moves = |index: &u32| can_move(&sim.world.objects[*index as usize]);
+        let moves = |index: &u32| moves_elsewhere(&sim.world.objects[*index as usize]);
+        let goals = goals.iter().flatten().map(|goal| goal.object());
+        let moving = goals
+            .clone()
+            .filter(|index| target.is_none_or(|target| target == *index) && moves(index));
         let used = sim
             .world
             .objects
@@ -278,7 +284,7 @@ impl Planner {
             version: self.floor.version,
             room: self.floor.room_at(sim.agent().position),
             target,
-            target_room: target.filter(moves).and_then(|index| self.floor.room_of(sim, index)),
+            rooms: moving.map(|index| self.floor.room_of(sim, index)).collect(),
             unlocked: sim.state.unlocked().collect(),
             carried: sim.state.carried().to_vec(),
             things: used
@@ -287,7 +293,7 @@ impl Planner {
                 .map(|(_, own)| own.position.map(f32::to_bits))
                 .collect(),
             is_due: used.map(|(object, _)| sim.state.is_due(object.order)).collect(),
-            goals: goals.iter().flatten().map(|goal| goal.object()).collect(),
+            goals: goals.collect(),
         }
     }
 }

@@ -50,8 +50,8 @@ pub(super) struct Ways {
     around: Flood,
     /// The floor's version and the target cells.
     destination: Option<(u64, Vec<u32>)>,
-    /// The floor's version, an object, its room and its position, if the targets are cells beside it.
-    object: Option<(u64, u32, Room, [f32; 2])>,
+    /// The floor's version, a room and the outline of an object in it, if the targets are cells beside that.
+    object: Option<(u64, Room, GroundShape)>,
     /// The floor's version, a zone and its room, if the targets are cells in it and its equals.
     zone: Option<(u64, u32, Room)>,
     /// The floor's version and the delivery, if the targets are cells from which to put a thing down.
@@ -83,7 +83,7 @@ impl Ways {
     /// Prepares to compare path lengths from a position.
     pub(super) fn look_around(&mut self, floor: &Floor, from: [f32; 2]) {
         let start = floor.cell_near(from).map(|cell| cell as u32);
-        self.around.begin(floor, start.as_slice());
+        self.around.begin(floor, start.as_slice(), true);
     }
 
     /// Length in metres of the path from the position given to [`Self::look_around`] to an object in the same room; costly ground
@@ -113,7 +113,7 @@ impl Ways {
         let mut shape = GroundShape::of(sim, object as usize);
         if is_near {
             shape.at = known(place);
-            if self.object == Some((floor.version, object, room, shape.at)) {
+            if self.object == Some((floor.version, room, shape)) {
                 return;
             }
         }
@@ -124,7 +124,7 @@ impl Ways {
         }
         *place = shape.at.map(f64::from);
         self.lead(floor, cells);
-        self.object = Some((floor.version, object, room, shape.at));
+        self.object = Some((floor.version, room, shape));
     }
 
     /// Leads to the cells of a room in these zones, all worth as much as the zone with this index.
@@ -150,7 +150,7 @@ impl Ways {
         if self.destination.as_ref().is_some_and(is_old) {
             return;
         }
-        self.flood.begin(floor, &targets);
+        self.flood.begin(floor, &targets, false);
         self.destination = Some((floor.version, targets));
     }
 

@@ -35,6 +35,15 @@ pub(super) struct ZoneCosts {
 }
 
 impl ZoneCosts {
+    /// Costs of entering each cell alone.
+    #[cfg(test)]
+    pub(super) fn of_entering(entering: Vec<u32>) -> Self {
+        Self {
+            entering,
+            ..Self::default()
+        }
+    }
+
     /// Raises the weights of cells in zones that cost, and closes zones that end an episode in failure.
     pub(super) fn new(world: &World, grid: Grid, weight: &mut [u16]) -> Self {
         let zones = &world.environment_params.zones;
