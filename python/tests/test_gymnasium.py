@@ -98,12 +98,13 @@ def test_options_of_a_subclass_are_checked() -> None:
         Own(colour="red", sizes=16)
 
 
-@pytest.mark.parametrize("actions", ["normalized", "discrete"])
-def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple[str, str], actions: Any) -> None:
+def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple[str, str]) -> None:
     env_id, variant = task_variant
-    rows: Any = WAYPOINTS if (variant, actions) == ("waypoints", "discrete") else actions
+    # Half of the variants with each kind of actions: the check takes longer than all else here.
+    is_odd = driftworld.TaskSpec.load(TASKS[env_id]).variant_names().index(variant) % 2
+    actions: Any = WAYPOINTS if variant == "waypoints" else ("normalized", "discrete")[is_odd]
     # pyproject.toml turns warnings into errors.
-    check_env(bare(env_id, variant=variant, actions=rows, size=40, render_mode="rgb_array", render_size=(48, 64)))
+    check_env(bare(env_id, variant=variant, actions=actions, size=40, render_mode="rgb_array", render_size=(48, 64)))
 
 
 @pytest.mark.parametrize(
