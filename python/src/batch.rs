@@ -97,7 +97,7 @@ impl PyBatch {
     ) -> Result<Self> {
         let overrides = Arc::new(overrides_of(overrides)?);
         let modalities: Vec<Modality> = serde_json::from_str(modalities).map_err(|error| {
-            PyValueError::new_err(format!("modalities: {error}, expected a list of kinds of images"))
+            PyValueError::new_err(format!("modalities: {error}, expected a list of image modalities"))
         })?;
         let supply =
             |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&overrides)));
@@ -136,7 +136,7 @@ impl PyBatch {
         Ok(self.lock()?.batch.renderer().name())
     }
 
-    /// Makes an environment draw its worlds with a different seed, from this index on.
+    /// Makes an environment draw its worlds with a different seed, starting at this index.
     fn seed(&self, env: usize, seed: u64, index: u64) -> Result<()> {
         self.supply(env)?.seed(seed, index);
         Ok(())

@@ -143,12 +143,12 @@ impl EnvOption {
     /// applies all options to a world.
     fn taken(&self, all: &[Said], is_given: bool, laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
         let keys: Vec<String> = self.keys.iter().map(|key| key[1..].replace('/', ".")).collect();
-        let told = |said: Vec<(&str, Json)>| json!({ "option": self.name, "key": keys.join(", "), "said": said });
+        let finding = |said: Vec<(&str, Json)>| json!({ "option": self.name, "key": keys.join(", "), "said": said });
         // Keyed by values with the options applied: the first variant with them, and its values without the options.
         let mut first: BTreeMap<(String, &str), (&str, Json)> = BTreeMap::new();
         for said in all {
             if is_given && said.drawn.iter().any(|pointer| self.covers(pointer)) {
-                return Some(told(vec![(&said.name, json!("drawn anew in each world"))]));
+                return Some(finding(vec![(&said.name, json!("drawn anew in each world"))]));
             }
             let (before, after) = ((self.read)(&said.values), (self.read)(&laid(&said.values)));
             let task = if self.joins_tasks { said.task.as_str() } else { "" };
@@ -156,13 +156,13 @@ impl EnvOption {
                 .entry((after.to_string(), task))
                 .or_insert_with(|| (&said.name, before.clone()));
             if *theirs != before {
-                return Some(told(vec![(*other, theirs.clone()), (&said.name, before)]));
+                return Some(finding(vec![(*other, theirs.clone()), (&said.name, before)]));
             }
             if let Some(usual) = &said.usual {
                 let (theirs, same) = ((self.read)(usual), (self.read)(&laid(usual)));
                 if after != before && theirs != before && same == after {
                     let defaults = format!("{}#{DEFAULT_VARIANT}", said.task);
-                    return Some(told(vec![(&said.name, before), (&defaults, theirs)]));
+                    return Some(finding(vec![(&said.name, before), (&defaults, theirs)]));
                 }
             }
         }

@@ -36,10 +36,7 @@ pub(crate) enum Compared<'py> {
 /// The distance between two variants or worlds: the JSON of `driftworld distance --json` as a dictionary.
 #[pyfunction]
 #[pyo3(signature = (a, b, weights, worlds, seed, index, by, scale, libraries))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "they are the arguments of a function of Python"
-)]
+#[expect(clippy::too_many_arguments, reason = "they are the arguments of a Python function")]
 pub(crate) fn distance<'py>(
     py: Python<'py>,
     a: Compared<'py>,
@@ -109,10 +106,7 @@ impl PyMatrix {
     /// Measures every pair of variants, each with its label.
     #[staticmethod]
     #[pyo3(signature = (labels, variants, weights, by, worlds, scale, libraries))]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "they are the arguments of a function of Python"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "they are the arguments of a Python function")]
     fn measure(
         py: Python<'_>,
         labels: Vec<String>,

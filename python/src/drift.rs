@@ -53,7 +53,7 @@ impl PyDrift {
                     .ok()
                     .filter(|schedule| !matches!(schedule, DriftSchedule::Steps(0) | DriftSchedule::Sawtooth(0)));
                 sound.ok_or_else(|| {
-                    let expected = "\"linear\", \"cosine\", {\"steps\": n} or {\"sawtooth\": n} with n from 1 on";
+                    let expected = "\"linear\", \"cosine\", {\"steps\": n} or {\"sawtooth\": n} with n at least 1";
                     wrong("schedule", &json.to_string(), expected)
                 })?
             }

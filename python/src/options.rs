@@ -134,7 +134,7 @@ impl<'py> Given<'py> {
         let path = self.extract::<PathBuf>(expected)?;
         path.into_os_string()
             .into_string()
-            .map_err(|_| Wrong::expected("a text in UTF-8"))
+            .map_err(|_| Wrong::expected("a string in UTF-8"))
     }
 }
 
@@ -150,7 +150,7 @@ impl IntoDeserializer<'_, Wrong> for Given<'_> {
 macro_rules! whole {
     ($($method:ident)*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
-            let number = self.extract("a whole number from 0 on")?;
+            let number = self.extract("a whole number of at least 0")?;
             visitor.visit_u64(number).map_err(|_: Wrong| Wrong::expected("a smaller number"))
         })*
     };
@@ -177,7 +177,7 @@ impl<'de> Deserializer<'de> for Given<'_> {
 
     fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         let is_path = (&visitor as &dyn Expected).to_string().contains("path");
-        visitor.visit_string(self.text(if is_path { "a path" } else { "a text" })?)
+        visitor.visit_string(self.text(if is_path { "a path" } else { "a string" })?)
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
@@ -201,7 +201,7 @@ impl<'de> Deserializer<'de> for Given<'_> {
         words: &'static [&'static str],
         visitor: V,
     ) -> Read<V::Value> {
-        let word = self.text("a text")?;
+        let word = self.text("a string")?;
         if !words.contains(&word.as_str()) {
             return Err(Wrong::expected(format!("one of {}", words.join(", "))));
         }

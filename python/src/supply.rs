@@ -149,11 +149,11 @@ impl Stream {
             PyValueError::new_err(format!("variants: found {found}, expected {expected}"))
         };
         if order.is_empty() || order.len() as u64 > u64::from(u32::MAX) {
-            return Err(wrong(&order.len().to_string(), "at least one, and less than 2^32"));
+            return Err(wrong(&order.len().to_string(), "at least one, and fewer than 2^32"));
         }
         if let Some(place) = order.iter().find(|place| **place as usize >= variants.len()) {
             let found = format!("place {place} in the order");
-            return Err(wrong(&found, "less than there are variants"));
+            return Err(wrong(&found, "less than the number of variants"));
         }
         let variants: Arc<[Variant]> = variants.iter().map(|variant| variant.get().0.clone()).collect();
         let turns = |env: u32| Turns {

@@ -135,7 +135,7 @@ impl PyVariant {
         Ok(world.to_json())
     }
 
-    /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by ``threads`` threads; 0 means one per processor.
+    /// ``count`` worlds, starting at number ``start``, as dictionaries, drawn by ``threads`` threads; 0 means one per processor.
     #[pyo3(
         signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
         text_signature = "($self, count, *, seed=0, start=0, threads=0)"
@@ -261,7 +261,7 @@ pub(crate) fn load_variants(name: &str) -> Result<Vec<PyVariant>> {
 /// Converts a value of a parameter, as written in a task spec.
 fn value_of(parameter: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let expected =
-        "expected a value as a task spec writes it: a finite number, a word, a truth value, a list or a dictionary";
+        "expected a value as in a task spec: a finite number, a string, True or False, a list or a dictionary";
     let wrong = || format!("{parameter}: found {value}, {expected}");
     let json = from_python(value).map_err(|error| {
         if error.is_instance_of::<PyTypeError>(value.py()) {

@@ -53,7 +53,7 @@ def main() -> None:
         sys.exit(f"newcomer: found {sorted(installed)}, expected driftworld and little more: make an empty environment")
     block = re.search(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     if not block:
-        sys.exit(f"newcomer: found no block of Python in {GUIDE}, expected the example that users begin with")
+        sys.exit(f"newcomer: found no Python block in {GUIDE}, expected the first example for users")
     command = str(Path(sys.executable).with_name("driftworld"))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

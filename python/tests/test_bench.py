@@ -15,7 +15,7 @@ def test_quick_run_prints_every_figure(capsys: pytest.CaptureFixture[str]) -> No
     printed = capsys.readouterr().out
     for line in ("64 environments, three modalities, copies", "read-only views (copy=False)", "views, depth in metres"):
         assert line in printed
-    assert "µs a step beyond the step in Rust" in printed
+    assert "µs a step on top of the step in Rust" in printed
 
 
 def test_json_has_rates_and_their_ratio(capsys: pytest.CaptureFixture[str]) -> None:

@@ -47,7 +47,7 @@ def test_changed_sequence_is_reported(tiny: Path, capsys: pytest.CaptureFixture[
     document["frozen"] = {"t_maze#left": {**Sequence.load("smoke").frozen["t_maze#left"], "frames": "0"}}
     tiny.write_text(json.dumps(document), encoding="utf-8")
     assert main(["check", str(tiny)]) == 1
-    assert "t_maze#left: found other frames than those" in capsys.readouterr().err
+    assert "t_maze#left: found different frames" in capsys.readouterr().err
 
 
 def test_lifetimes_of_seeds_and_splits_share_no_world() -> None:
@@ -83,8 +83,8 @@ def test_claim_belongs_to_one_process_until_it_is_stale(tmp_path: Path, monkeypa
         (["run", "smoke"], "found no learner, expected --learner NAME or --all"),
         (["run", "smok", "--learner", "ewc"], "found 'smok', expected a file or one of"),
         (["run", "smoke", "--learner", "ewc", "--jobs", "0"], "--jobs: found 0, expected at least 1"),
-        (["run", "smoke", "--learner", "ewc", "--seed", "-1"], "expected --seed from 0, --seeds from 1"),
-        (["table", "nowhere", "--sequence", "smoke"], "nowhere: found no such folder, expected one of cells, such as results/mixed"),
+        (["run", "smoke", "--learner", "ewc", "--seed", "-1"], "expected --seed to be at least 0 and --seeds at least 1"),
+        (["table", "nowhere", "--sequence", "smoke"], "nowhere: found no such folder, expected a folder of cells, such as results/mixed"),
         (["table", "."], "expected --sequence with its name or file"),
         (["table", ".", "--sequence", "smoke"], ".: found no finished cell, expected LEARNER/SEED/report.json"),
         (["run", "smoke", "--learner", "ewc", "--set", "strength=1", "--set", "strength=2"], "--set: found strength=1, strength=2, expected each name once"),
@@ -196,7 +196,7 @@ def test_custom_learner_is_one_file(
     capsys.readouterr()
     Path("my_learner.py").write_text(Path("my_learner.py").read_text(encoding="utf-8") + "# Another one.\n", encoding="utf-8")
     assert main([*run, "--set", "strength=0.1"]) == 1
-    assert "found a finished cell of my_learner.py as it was" in capsys.readouterr().err
+    assert "found a cell finished with another version of my_learner.py" in capsys.readouterr().err
     assert main(["new", "my_learner"]) == 1
 
 

@@ -49,7 +49,7 @@ def test_blank_window_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     report = checks.check("get_to_goal", steps=5, processes=False, size=40, modalities="rgb")
     assert [each.outcome for each in report.findings if "window" in each.rule] == ["passed"]
     monkeypatch.setattr(DriftworldEnv, "render", lambda self: render(self) or "a picture")
-    assert 'a window shows it with render_mode="human"' in failed(
+    assert 'opens a window with render_mode="human"' in failed(
         checks.check("get_to_goal", steps=5, processes=False, size=40, modalities="rgb")
     )
 
@@ -69,8 +69,8 @@ def test_reward_that_differs_in_the_batch_is_reported(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(DriftworldVectorEnv, "step", generous)
     found = failed(checks.check("find_objects", steps=5, processes=False, size=40))
-    assert "alone as in the batch, bit for bit" in found
-    assert "as SyncVectorEnv, bit for bit" in found
+    assert "a single environment matches the batch, bit for bit" in found
+    assert "matches SyncVectorEnv, bit for bit" in found
 
 
 def test_ignored_seed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,7 +84,7 @@ def test_ignored_seed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(DriftworldEnv, "reset", forgetful)
     found = failed(checks.check("find_objects", steps=5, processes=False, size=40))
     assert "Gymnasium's check_env, without a warning" in found
-    assert "same seed, same worlds, one after the other" in found
+    assert "same seed, same sequence of worlds" in found
 
 
 def test_final_observation_of_the_next_episode_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +102,7 @@ def test_incomplete_state_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     state = DriftworldEnv.state
 
     def forgetful(self: DriftworldEnv) -> dict[str, Any]:
-        # Without progress and seeds, wandering objects draw another goal.
+        # Without progress and seeds, wandering objects draw a different goal.
         world = state(self)
         del world["progress"]
         for thing in world["objects"]:
@@ -111,7 +111,7 @@ def test_incomplete_state_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(DriftworldEnv, "state", forgetful)
     assert failed(checks.check("moving_object", steps=20, processes=False, size=40)) == [
-        "goes on from state() to the last bit"
+        "continues from state(), bit for bit"
     ]
 
 

@@ -196,7 +196,7 @@ def test_options_without_differences_cause_no_warning() -> None:
 
 
 def test_variants_that_look_alike_in_all_images_are_refused() -> None:
-    message = r"^modalities: found it over target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
+    message = r"^modalities: found it hiding target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
     curriculum = evaluation_of("find_objects#blue", "find_objects#red")
     for shown in ("depth", ["depth", "class"], "state"):
         with pytest.raises(CurriculumError, match=message) as refused:

@@ -147,7 +147,7 @@ def test_invalid_curriculum_is_refused_with_pointer() -> None:
         Curriculum.design()
     with pytest.raises(CurriculumError, match="expected state, action"):
         Curriculum.design("find_objects", probe="rewrd")
-    with pytest.raises(TypeError, match="a scenario calls tasks by their names"):
+    with pytest.raises(TypeError, match="a scenario refers to tasks by name"):
         Curriculum.design(driftworld.variant("find_objects#red"))  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="without act, learn, freeze"):
         small().run(object())  # type: ignore[arg-type]

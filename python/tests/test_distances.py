@@ -240,10 +240,10 @@ def test_order_keeps_its_ends() -> None:
         order(VARIANTS, start="nobody")
     with pytest.raises(SimilarityError, match="nearby"):
         order(VARIANTS, "nearby")
-    with pytest.raises(ValueError, match="measured already"):
+    with pytest.raises(ValueError, match="already holds its distances"):
         order(distance_matrix(VARIANTS[:2]), weights={"R": 1})
     for name, value in {"by": "parameters", "worlds": 3, "scale": "share", "assets": ["a.dwal"]}.items():
-        with pytest.raises(ValueError, match=f"{name}: found some beside a matrix"):
+        with pytest.raises(ValueError, match=f"{name}: found a value in addition to a matrix"):
             order(distance_matrix(VARIANTS[:2]), **{name: value})  # type: ignore[arg-type]
 
 

@@ -73,7 +73,7 @@ class Counter(Uniform):
 
 
 class Many:
-    """A vector agent made of one single agent for each environment."""
+    """A vector agent made of one agent per environment."""
 
     def __init__(self, kind: type[Uniform], num_envs: int) -> None:
         self.agents = [kind() for _ in range(num_envs)]

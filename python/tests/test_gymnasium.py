@@ -531,7 +531,7 @@ def test_spec_has_the_step_limit_of_the_options() -> None:
 
 def test_vector_has_an_origin_for_each_environment() -> None:
     envs = gym.make_vec(FIND, num_envs=2, size=8, render_mode="rgb_array").unwrapped
-    with pytest.raises(gym.error.ResetNeeded, match="render: found environments that had no reset"):
+    with pytest.raises(gym.error.ResetNeeded, match="render: found environments that have not been reset"):
         envs.render()
     infos = envs.reset(seed=3)[1]
     assert [envs.origin(env)["world_hash"] for env in range(2)] == infos["world_hash"].tolist()

@@ -263,7 +263,7 @@ def test_step_writes_into_the_callers_arrays(modalities: Any) -> None:
     assert first_difference(rows, [observations for observations, *_ in expected]) is None
     before = ours.state(0)
     for wrong in (np.zeros((1, 2), np.float32), {}, {"rgb": np.zeros((2, 16, 16, 3), np.uint8)}):
-        with pytest.raises(ValueError, match="out: found other arrays than observations have"):
+        with pytest.raises(ValueError, match="out: found arrays that do not match the observations"):
             ours.step(actions[0], out=wrong)
     locked = rows[0]["rgb"] if isinstance(rows[0], dict) else rows[0]
     locked.flags.writeable = False

@@ -215,7 +215,7 @@ def test_task_borders_follow_the_option(learners: Any) -> None:
 
 
 @needs_torch
-def test_finished_log_refuses_a_learner_made_otherwise(learners: Any, tmp_path: Path) -> None:
+def test_finished_log_refuses_a_learner_with_other_arguments(learners: Any, tmp_path: Path) -> None:
     log = tmp_path / "log"
     digest = run_lifetime(small("L2", strength=0.5), log, "left").digest()
     assert run_lifetime(small("L2", strength=0.5), log, "left").digest() == digest
@@ -264,7 +264,7 @@ def test_step_takes_a_tensor_of_one_number(learners: Any) -> None:
 
 @needs_torch
 def test_learner_of_several_environments_is_refused_by_run(learners: Any) -> None:
-    with pytest.raises(TypeError, match=r"agent: found a learner of several environments.*use run_vector"):
+    with pytest.raises(TypeError, match=r"agent: found a learner for several environments.*use run_vector"):
         curriculum("left", learn=1).run(small(), **OPTIONS)
 
 
@@ -403,7 +403,7 @@ def test_no_minibatch_has_a_single_step(learners: Any, steps: int) -> None:
 
 
 @needs_torch
-def test_the_learning_rate_falls_to_a_tenth_within_a_task(learners: Any) -> None:
+def test_learning_rate_falls_to_a_tenth_within_a_task(learners: Any) -> None:
     learner = small(settings=learners.Settings(rollout=8, minibatch=16, annealing=64))
     steps, rates = Steps(learner, idles=0.0), []
     for _ in range(4):

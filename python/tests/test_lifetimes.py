@@ -84,7 +84,7 @@ def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     seeds = [seed for _, seed in agent.begun]
     assert seeds[2] == seeds[4] and seeds[5:7] == seeds[7:9]
     assert len(set(seeds)) == 2 + 2 + 3 + 2 + 3 + 2
-    # With `paired_chance`, every evaluation of a world has the same seed, and learning has another.
+    # With `paired_chance`, every evaluation of a world has the same seed, and learning a different one.
     paired = Circler()
     small(max_steps=7).run(paired, check_frozen=False, paired_chance=True, **SMALL)
     seeds = [seed for _, seed in paired.begun]

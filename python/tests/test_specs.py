@@ -167,7 +167,7 @@ def test_drift_leads_from_one_variant_to_another(lamps: TaskSpec) -> None:
     ("options", "message"),
     [
         ({"schedule": "cosinus"}, 'found "cosinus", expected "linear"'),
-        ({"schedule": {"steps": 0}}, "with n from 1 on"),
+        ({"schedule": {"steps": 0}}, "with n at least 1"),
         ({"switch": "sudden"}, 'found "sudden", expected "at_point", "mixture" or "task"'),
     ],
 )
@@ -249,7 +249,7 @@ def test_different_variants_with_the_same_name_are_refused(lamps: TaskSpec) -> N
     day = lamps.variant("day")
     near, _ = day.at_distance(0.1, "observation")
     far, _ = day.at_distance(0.2, "observation")
-    with pytest.raises(ValueError, match="two called 'lamps#found' that differ.*name="):
+    with pytest.raises(ValueError, match="two different variants called 'lamps#found'.*name="):
         driftworld.distance_matrix([day, near, far])
     edited = TaskSpec.from_dict({**LAMPS, "variants": {"day": {"light": 3}}})
     with pytest.raises(ValueError, match="'lamps#day'"):

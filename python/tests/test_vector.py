@@ -431,5 +431,5 @@ def test_info_none_is_refused_if_something_needs_infos() -> None:
     for label in ("info", "observation"):
         with pytest.raises(ValueError, match='info: found "none" with task_label'):
             gym.make(FIND, info="none", task_label=label, modalities="rgb")
-    with pytest.raises(ValueError, match="a log has what infos say"):
+    with pytest.raises(ValueError, match="a log records values from infos"):
         driftworld.Curriculum.design("find_objects#blue", learn=1, eval_episodes=1).environment(info="none")

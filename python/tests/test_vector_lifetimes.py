@@ -14,7 +14,7 @@ from test_lifetimes import QUARRY
 
 
 class Looker:
-    """Turns according to its observations and its seed, and learns nothing: one for each environment act like a single one."""
+    """Turns according to its observations and its seed, and learns nothing. One per environment acts like a single one."""
 
     name = "looker"
 
@@ -36,7 +36,7 @@ class Looker:
 
 
 class Many:
-    """A vector agent made of one single agent for each environment."""
+    """A vector agent made of one agent per environment."""
 
     def __init__(self, num_envs: int, make: Any) -> None:
         self.agents = [make() for _ in range(num_envs)]

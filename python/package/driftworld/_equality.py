@@ -18,7 +18,7 @@ def first_difference(left: Any, right: Any, place: str = "") -> str | None:
     Args:
         left: Numbers, strings, arrays, or mappings and sequences of these, nested to any depth.
         right: The value to compare with.
-        place: Name of the values in the result.
+        place: How the result refers to the values.
     """
     if isinstance(left, Mapping) and isinstance(right, Mapping):
         return _of_mappings(left, right, place)

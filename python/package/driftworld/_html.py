@@ -12,8 +12,8 @@ def table(
     caption: str = "",
     shades: Iterable[Sequence[float]] = (),
 ) -> str:
-    """An HTML table: numeric columns are right-aligned except the first, the others left-aligned. All texts are
-    escaped.
+    """An HTML table: the first column and all text columns are left-aligned, other numeric columns
+    right-aligned. All texts are escaped.
 
     ``shades`` gives the tint of every cell after the first, row by row, in 0..=1.
     """
@@ -26,16 +26,16 @@ def table(
         # Translucent, so that the text is readable on light and dark pages.
         colors = ["", *(f"; background-color: rgba(66, 133, 244, {0.6 * tint:.2f})" for tint in tints)]
         colors += [""] * (len(texts) - len(colors))
-        told = (
+        marked_up = (
             f'<{tag} style="text-align: {side}{color}">{html.escape(text)}</{tag}>'
             for side, color, text in zip(aligned, colors, texts, strict=True)
         )
-        return f"<tr>{''.join(told)}</tr>"
+        return f"<tr>{''.join(marked_up)}</tr>"
 
-    told = f"<caption>{html.escape(caption)}</caption>" if caption else ""
+    caption_html = f"<caption>{html.escape(caption)}</caption>" if caption else ""
     tinted = [*shades]
     body = "".join(cells("td", row, tinted[place] if tinted else ()) for place, row in enumerate(listed))
-    return f"<table>{told}<thead>{cells('th', head)}</thead><tbody>{body}</tbody></table>"
+    return f"<table>{caption_html}<thead>{cells('th', head)}</thead><tbody>{body}</tbody></table>"
 
 
 def _is_number(text: str) -> bool:

@@ -185,7 +185,7 @@ class Drift:
     Args:
         from_: The first variant.
         to: The last variant, of the same task unless whole variants switch.
-        schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n from 1 on.
+        schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n at least 1.
         switch: When values that cannot be interpolated change: ``"at_point"``, or with ``"mixture"`` at random, more
             likely as the drift goes on. With ``"task"`` the whole variant is one of the two at random; they may belong
             to two tasks.
@@ -314,7 +314,7 @@ class TaskSpec:
 
         Raises:
             TaskError: If it does not exist or cannot be read.
-            SpecError: If the document is wrong, with every problem and its place.
+            SpecError: If the document is wrong, with every problem and its position.
         """
 
     @staticmethod
@@ -438,8 +438,8 @@ class Variant:
         """The same as one line of JSON."""
 
     def sample_many(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[dict[str, Any]]:
-        """``count`` worlds from number ``start`` on, drawn by ``threads`` threads, at most 1024; 0 is one for each
-        processor.
+        """``count`` worlds, starting at number ``start``, drawn by ``threads`` threads, at most 1024; 0 means one for
+        each processor.
         """
 
     def sample_many_json(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[str]:

@@ -25,7 +25,7 @@ def plain(value: Any) -> Any:
         return os.fspath(value)
     found = type(value).__name__
     raise TypeError(
-        f"found a value of type {found}, expected what JSON can express: numbers, strings, lists, dictionaries"
+        f"found a value of type {found}, expected one that JSON can represent: a number, string, list or dictionary"
     )
 
 

@@ -267,7 +267,7 @@ def _table(figures: dict[str, Any]) -> str:
     versions = f"Driftworld {machine['driftworld']}, Python {machine['python']}, Gymnasium {machine['gymnasium']}"
     lines = [
         f"{versions}, {machine['processors']} processors",
-        f"{'steps per second':<52}{'ours':>10}  {'beside':>10}  {'ratio':>6}",
+        f"{'steps per second':<52}{'ours':>10}  {'other':>10}  {'ratio':>6}",
     ]
     for text, ours, theirs, ratio, who in _LINES:
         if ours in figures:
@@ -275,18 +275,18 @@ def _table(figures: dict[str, Any]) -> str:
         elif f"{theirs}_missing" in figures:
             lines.append(f"{text:<52}{'':>10}  {'':>10}  {'':>6}  {who}: {figures[f'{theirs}_missing']}")
     lines.append(
-        f"one environment alone: {figures['single']:,.0f} steps/s, {figures['single_overhead_us']:.1f} µs a step beyond the "
+        f"one environment alone: {figures['single']:,.0f} steps/s, {figures['single_overhead_us']:.1f} µs a step on top of the "
         f"step in Rust ({figures['single_rust']:,.0f} steps/s)"
     )
-    lines.append(f"resets: {figures['resets']:,.0f} per second, each another world")
+    lines.append(f"resets: {figures['resets']:,.0f} per second, each to a new world")
     return "\n".join(lines)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(prog="python -m driftworld.bench", description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=2.0, help="for each rate (default: %(default)s)")
-    parser.add_argument("--quick", action="store_true", help="a moment for each, and no peers")
+    parser.add_argument("--seconds", type=float, default=2.0, help="time spent on each rate (default: %(default)s)")
+    parser.add_argument("--quick", action="store_true", help="measure each rate only briefly, and no peers")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     asked = parser.parse_args(arguments)
     if not asked.seconds > 0:

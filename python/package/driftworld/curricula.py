@@ -81,7 +81,7 @@ class Experience:
         return self.variant.partition("#")[0]
 
     def world(self) -> dict[str, Any]:
-        """Its world as it is run, with the scenario's limit of steps applied."""
+        """Its world as it is run, with the scenario's step limit applied."""
         world: dict[str, Any] = _native.parsed(self._plan.world(self.number).text())
         return world
 
@@ -432,7 +432,7 @@ class Curriculum(Sequence[Block]):
             ValueError: If an option is wrong; no log is started.
         """
         if isinstance(getattr(agent, "num_envs", None), int):
-            raise TypeError("agent: found a learner of several environments, expected one of a single; use run_vector(…, num_envs=…)")
+            raise TypeError("agent: found a learner for several environments, expected one for a single environment; use run_vector(…, num_envs=…)")
         plan = self._own_plan(skip_undrawable, seed)
 
         def rollout(save: Callable[[int], None]) -> Rollout:
@@ -567,7 +567,7 @@ def _designed(options: dict[str, Any]) -> list[str]:
     if not tasks:
         raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
     if not all(isinstance(task, str) for task in tasks):
-        raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
+        raise TypeError('tasks: found objects, expected names such as "find_objects#red": a scenario refers to tasks by name')
     # Checks the tasks first, so that their errors are raised with their position.
     variants(*tasks)
     for name in _WHOLE:

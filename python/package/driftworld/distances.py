@@ -165,8 +165,8 @@ def distance(
     tasks = [side.task for side in sides if isinstance(side, Variant)]
     if by is None and worlds is None and len(tasks) == 2 and tasks[0] != tasks[1]:
         warnings.warn(
-            "distance: found variants of two tasks and no by, expected by=\"worlds\" or another measure: they have no parameters in "
-            "common, so the number is by worlds, in another unit",
+            "distance: found variants of two tasks and no by, expected by=\"worlds\" or another measure: the tasks have no "
+            "parameters in common, so the distance is measured by worlds, in a different unit",
             stacklevel=2,
         )
     letters = {name: letter for letter, name in ELEMENTS.items()}
@@ -270,7 +270,7 @@ class DistanceMatrix:
             dim: 1 or 2. The first axis is the longer one.
         """
         if dim not in (1, 2):
-            raise ValueError(f"dim: found {dim!r}, expected 1 or 2; for more, hand `values` to a library of its own")
+            raise ValueError(f"dim: found {dim!r}, expected 1 or 2; for more dimensions, pass `values` to an embedding library")
         points, _ = self._native.map()
         return points[:, :dim]
 
@@ -354,7 +354,7 @@ class DistanceMatrix:
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         if copy is False and dtype is not None and np.dtype(dtype) != self.values.dtype:
-            raise ValueError(f"copy: found False with {dtype}, expected float64, which the distances are")
+            raise ValueError(f"copy: found False with {dtype}, expected float64, the dtype of the distances")
         return np.array(self.values, dtype=dtype) if copy else np.asarray(self.values, dtype=dtype)
 
     def __repr__(self) -> str:
@@ -527,7 +527,7 @@ def order(
         measured = {"weights": weights, "by": by, "worlds": worlds, "scale": None if scale == "units" else scale, "assets": assets or None}
         for name, value in measured.items():
             if value is not None:
-                raise ValueError(f"{name}: found some beside a matrix, expected none: its distances are measured already")
+                raise ValueError(f"{name}: found a value in addition to a matrix, expected none: the matrix already holds its distances")
         matrix = items
     else:
         named = [items] if isinstance(items, (str, os.PathLike, Variant, TaskSpec)) else list(items)

@@ -62,7 +62,7 @@ class Frozenness:
         raise CurriculumError(
             f"block {now.block}: found a different action in step {step} of experience {now.number} ({now.variant}) when this evaluation was "
             "run once more, expected the same: evaluations change the agent, or its random numbers are not drawn from the seed that "
-            "begin() gets. Keep running statistics, memories and counters apart while frozen, and use generators of your own in place "
+            "begin() gets. While frozen, keep separate running statistics, memories and counters, and use your own generators instead "
             "of NumPy's, torch's or Python's global ones; check_frozen=False runs without this check",
             code="curriculum/not-frozen",
         )

@@ -50,7 +50,7 @@ class Transition:
         action: The action.
         reward: Its reward.
         terminated: Whether an event ended the episode.
-        truncated: Whether a limit of steps ended it.
+        truncated: Whether a step limit ended it.
         next_observation: The observation after the step.
         info: The info of the step.
     """
@@ -333,7 +333,7 @@ class Rollout:
         """Duration of ``steps`` steps, from the time values passed to :meth:`experience`."""
         time_step, skip, max_seconds = time
         seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
-        # A limit of seconds cuts the last step short; an option `max_steps` replaces it.
+        # A time limit cuts the last step short; an option `max_steps` replaces it.
         limited = max_seconds > 0 and self._options.get("max_steps") is None
         return min(steps * seconds_per_step, max_seconds if limited else math.inf)
 
@@ -352,7 +352,7 @@ class Rollout:
         """Runs one experience in its world; returns its reward, success, steps, seconds, whether a limit truncated it,
         and what ended it.
 
-        ``time`` is the world's time step in seconds, the number of time steps per action, and its limit of seconds, 0
+        ``time`` is the world's time step in seconds, the number of time steps per action, and its time limit in seconds, 0
         for none.
         """
         now = self._experience(number)
@@ -408,9 +408,9 @@ def refuse_options(options: Mapping[str, Any]) -> None:
     """Refuses environment options that the curriculum controls."""
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
-        raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
+        raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum sets it")
     if options.get("info") == "none":
-        raise ValueError('info: found "none", expected "agent" or "full": a log has what infos say')
+        raise ValueError('info: found "none", expected "agent" or "full": a log records values from infos')
 
 
 def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
@@ -536,7 +536,7 @@ def _beside(log: Path) -> Path:
     """The folder beside a log where its agent is saved."""
     path = Path(os.path.abspath(log))
     if not path.name:
-        raise ValueError(f"log: found {str(log)!r}, expected the path of a folder of its own")
+        raise ValueError(f"log: found {str(log)!r}, expected the path of a separate folder for the log")
     return path.with_name(f"{path.name}.agent")
 
 

@@ -2,7 +2,7 @@
 rewards and limits, with worlds of Driftworld's task families.
 
 ``miniworld.json`` describes each by MiniWorld's name: Driftworld's ``task`` and ``variant``, what is ``laid`` over
-the task's document (a value for each JSON pointer, null to remove one), the limit of ``steps`` (0 for none), the number
+the task's document (a value for each JSON pointer, null to remove one), the step limit ``steps`` (0 for none), the number
 of MiniWorld's ``actions``, what ``pays``, and whether steps are ``fast``. ``like`` copies all entries of another name.
 """
 

@@ -63,8 +63,8 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
         for label, member in _named(name):
             if found.setdefault(label, member) != member:
                 raise ValueError(
-                    f"variants: found two called {label!r} that differ, expected a name for each; give one another with "
-                    "with_values(name, ...) or at_distance(..., name=...), or an edited task spec a name of its own"
+                    f"variants: found two different variants called {label!r}, expected distinct names; rename one with "
+                    "with_values(name, ...) or at_distance(..., name=...), or rename an edited task spec"
                 )
     return list(found.items())
 

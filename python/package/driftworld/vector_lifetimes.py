@@ -38,7 +38,7 @@ class VectorTransition:
         actions: The actions.
         rewards: Their rewards, float64 ``(num_envs,)``.
         terminated: Whether an event ended the episode, bool ``(num_envs,)``.
-        truncated: Whether a limit of steps ended it, bool ``(num_envs,)``.
+        truncated: Whether a step limit ended it, bool ``(num_envs,)``.
         next_observations: The observations after the step; for an ended episode its last observation, never the first
             of the next.
         active: Which environments run an experience, bool ``(num_envs,)``; near the end of a block some have none.

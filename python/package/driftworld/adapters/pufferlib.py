@@ -69,7 +69,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self._lengths = np.zeros(num_envs, dtype=np.int64)
         if not isinstance(self.single_observation_space, gymnasium.spaces.Box):
             raise ValueError(
-                f'modalities: found {self.single_observation_space}, expected one for PufferLib, such as modalities="rgb"'
+                f'modalities: found {self.single_observation_space}, expected a single modality for PufferLib, such as modalities="rgb"'
             )
         super().__init__(buf)
 

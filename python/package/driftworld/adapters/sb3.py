@@ -83,7 +83,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         refused = sorted({"autoreset_mode", "copy"} & options.keys())
         if refused:
             raise ValueError(
-                f"{refused[0]}: Stable-Baselines3 needs same_step and copies; found it set, expected it left out"
+                f"{refused[0]}: found it among the options, expected none: Stable-Baselines3 needs same_step and copies"
             )
         self.envs: Any = gymnasium.make_vec(
             env_id,
@@ -170,7 +170,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     def step_wait(self) -> tuple[Any, npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
         """Steps all environments; returns observations, rewards (float32), dones, and one info for each."""
         if self._actions is None:
-            raise RuntimeError("step_wait: found no actions, expected step_async before; call step(actions)")
+            raise RuntimeError("step_wait: found no actions, expected a call of step_async first; or call step(actions)")
         observations, rewards, terminated, truncated, vector_info = self.envs.step(self._actions)
         self._actions = None
         dones = np.logical_or(terminated, truncated)

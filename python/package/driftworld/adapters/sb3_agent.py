@@ -96,7 +96,7 @@ class Agent:
         """Seeds the experience that begins: ``(label, seed)``, or ``(env, label, seed)``."""
         env, seed = (beginning[0] if len(beginning) == 3 else 0), beginning[-1]
         if env >= len(self._generators):
-            raise ValueError(f"Agent: found more environments than the model's {len(self._generators)}; pass num_envs={len(self._generators)}")
+            raise ValueError(f"Agent: found more environments than the model has, expected {len(self._generators)}; pass num_envs={len(self._generators)}")
         self._generators[env] = np.random.default_rng([seed, self.model.seed or 0])
 
     def freeze(self, frozen: bool) -> None:
@@ -137,7 +137,7 @@ class Agent:
         if {kind: array.shape for kind, array in observed.items()} != expected:
             found = {kind: array.shape for kind, array in arrays.items()}
             raise ValueError(
-                f"Agent: found observations {found}, expected {expected} (images with the channels first or last) as of the model's "
+                f"Agent: found observations {found}, expected {expected} (images with the channels first or last) as in the model's "
                 f"environment; make the model with curriculum.environment(**options), and run it with these options and num_envs={model.n_envs}"
             )
         return observed if isinstance(observations, Mapping) else observed[""]
@@ -331,17 +331,17 @@ def _reject_unsupported(model: Any, total: int | None) -> None:
     schedules = [name for name in _SCHEDULES if callable(getattr(model, name, None))]
     changing = [name for name in schedules if getattr(model, name)(1.0) != getattr(model, name)(0.0)]
     if changing and total is None:
-        raise ValueError(f"total_timesteps: found none for the model's {changing[0]}, expected after how many decisions it has fallen")
+        raise ValueError(f"total_timesteps: found none for the model's {changing[0]}, expected the number of decisions over which it changes")
     if model.use_sde:
-        raise ValueError("model: found use_sde=True, expected False: its noise is drawn for rollouts, not for experiences")
+        raise ValueError("model: found use_sde=True, expected False: its noise is drawn for each rollout, not for each experience")
     wrapper = model.env
     while isinstance(wrapper, VecEnvWrapper):
         if not isinstance(wrapper, (VecMonitor, VecTransposeImage)):
-            raise ValueError(f"model: found an environment in {type(wrapper).__name__}, expected one that shows what the curriculum does")
+            raise ValueError(f"model: found an environment wrapped in {type(wrapper).__name__}, expected one with the curriculum's observations and rewards")
         wrapper = wrapper.venv
     for name, plain in (("optimize_memory_usage", False), ("n_steps", 1)) if isinstance(model, OffPolicyAlgorithm) else ():
         if model.n_envs > 1 and getattr(model, name, plain) != plain:
-            raise ValueError(f"model: found {name}={getattr(model, name)} with {model.n_envs} environments, expected one, or {name}={plain}")
+            raise ValueError(f"model: found {name}={getattr(model, name)} with {model.n_envs} environments, expected one environment, or {name}={plain}")
 
 
 def _active_samples(buffer: Any, positions: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:

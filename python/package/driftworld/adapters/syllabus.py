@@ -53,7 +53,7 @@ class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any
     def __init__(self, env: gymnasium.Env[Any, Any], ceilings: Mapping[str, float]) -> None:
         super().__init__(env)
         if not ceilings or min(ceilings.values()) <= 0:
-            raise ValueError(f"ceilings: found {dict(ceilings)!r}, expected some above 0, by the name of the variant")
+            raise ValueError(f"ceilings: found {dict(ceilings)!r}, expected numbers above 0, by variant name")
         for name in ceilings:
             env.unwrapped._members.checked({"variant": name}, many=False)  # type: ignore[attr-defined]
         self.variants, self.ceilings = list(ceilings), list(ceilings.values())

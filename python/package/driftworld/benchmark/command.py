@@ -25,7 +25,7 @@ from driftworld.learners import PPO
 
 
 class MyLearner(PPO):
-    """PPO with all weights held near those it began with (L2-init, arXiv:2308.11958; its λ is half of this strength)."""
+    """PPO with all weights held near their initial values (L2-init, arXiv:2308.11958; its λ is half of this strength)."""
 
     name = "my_learner"
 
@@ -58,7 +58,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="driftworld benchmark", description="Continual learners compared in frozen sequences of tasks.")
+    parser = argparse.ArgumentParser(prog="driftworld benchmark", description="Compare continual learners in frozen sequences of tasks.")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     def command(name: str, run: Any, about: str) -> argparse.ArgumentParser:
@@ -67,26 +67,26 @@ def _parser() -> argparse.ArgumentParser:
         return added
 
     command("list", _list, "List the sequences and the learners.")
-    running = command("run", _run, "Run cells: each learner with each seed. What is finished is not run again, what was killed goes on.")
+    running = command("run", _run, "Run cells: each learner with each seed. Finished cells are not run again, and killed ones resume.")
     running.add_argument("sequence", help="a name that `list` prints, or a file")
     running.add_argument("--learner", action="append", default=[], metavar="NAME", help="a name that `list` prints, or FILE.py:CLASS; repeatable")
     running.add_argument("--all", action="store_true", help="all learners of driftworld.learners that the sequence names")
     running.add_argument("--seed", action="append", type=int, default=[], metavar="S", help="a seed; repeatable")
     running.add_argument("--seeds", type=int, metavar="N", help="the seeds 0 to N - 1 [default: 1]")
-    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="an argument of the learner, for another row of its own; repeatable for another argument")
-    running.add_argument("--split", choices=["test", "validation"], default="test", help="validation: worlds to tune in")
-    running.add_argument("-o", "--output", type=Path, default=Path("results"), metavar="DIR", help="where machines may run cells together [default: results]")
+    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="an argument of the learner, which makes a separate row; repeatable for several arguments")
+    running.add_argument("--split", choices=["test", "validation"], default="test", help="validation: worlds for tuning")
+    running.add_argument("-o", "--output", type=Path, default=Path("results"), metavar="DIR", help="output folder, which several machines may share [default: results]")
     running.add_argument("--jobs", type=int, default=1, metavar="N", help="processes, one core each [default: 1]")
     running.add_argument("--ray", metavar="ADDRESS", help="run on the nodes of a Ray cluster that share the folder")
-    running.add_argument("--dry-run", action="store_true", help="say which cells there are, and what they cost")
+    running.add_argument("--dry-run", action="store_true", help="list the unfinished cells and estimate their cost, but run nothing")
     table = command("table", _table, "Make the table of a sequence from the logs.")
     table.add_argument("results", type=Path, help="a folder of cells, such as results/mixed")
-    table.add_argument("-o", "--output", type=Path, metavar="FILE", help="Markdown to write; printed if not given")
-    table.add_argument("--figure", type=Path, metavar="FILE", help="SVG to write beside it: what each learner can do after each task")
-    table.add_argument("--sequence", help="its name or file, if the folder is called otherwise")
-    checked = command("check", _check, "Compare worlds and frames of a sequence with those that it was frozen with.")
-    checked.add_argument("sequence", nargs="?", help="its name or file; all that come with Driftworld if not given")
-    scaffold = command("new", _new, "Write a learner of your own to begin with.")
+    table.add_argument("-o", "--output", type=Path, metavar="FILE", help="Markdown file to write; by default the table is printed")
+    table.add_argument("--figure", type=Path, metavar="FILE", help="SVG file to write as well: each learner's performance after each task")
+    table.add_argument("--sequence", help="name or file of the sequence, if the folder has a different name")
+    checked = command("check", _check, "Check that a sequence still has the worlds and frames that it was frozen with.")
+    checked.add_argument("sequence", nargs="?", help="its name or file; by default all sequences that come with Driftworld")
+    scaffold = command("new", _new, "Write a file with a new learner, as a starting point.")
     scaffold.add_argument("name", help="such as my_learner")
     return parser
 
@@ -109,7 +109,7 @@ def _cells(parsed: argparse.Namespace) -> list[Cell]:
         raise ValueError("found no learner, expected --learner NAME or --all")
     seeds = parsed.seed or list(range(1 if parsed.seeds is None else parsed.seeds))
     if not seeds or min(seeds) < 0:
-        raise ValueError("found a seed or a number of seeds below its least, expected --seed from 0, --seeds from 1")
+        raise ValueError("found a negative seed or no seeds, expected --seed to be at least 0 and --seeds at least 1")
     if parsed.jobs < 1:
         raise ValueError(f"--jobs: found {parsed.jobs}, expected at least 1")
     words = [each.partition("=")[0] for each in parsed.set]
@@ -137,7 +137,7 @@ def _run(parsed: argparse.Namespace) -> None:
             make_learner(cell, sequence, "sampled")
     print(
         f"{len(cells)} {'cell' if len(cells) == 1 else 'cells'} of {decisions:,} decisions, {len(cells) - len(left)} finished; about "
-        f"{hours:.2g} core hours and {len(left) * _BYTES / 1e6:.2g} MB to come",
+        f"{hours:.2g} core hours and {len(left) * _BYTES / 1e6:.2g} MB left",
         flush=True,
     )
     if parsed.dry_run:
@@ -146,7 +146,7 @@ def _run(parsed: argparse.Namespace) -> None:
         return
 
     def report_cell(cell: Cell, report: dict[str, Any] | None) -> None:
-        running = f"another process is running it, or was killed in the last {STALE:.0f} seconds: run this again then"
+        running = f"another process is running it, or was killed less than {STALE:.0f} seconds ago: run this again later"
         print(f"  {cell.folder(parsed.output)}: ", end="")
         print(running if report is None else f"{report['seconds']:.0f} s of learning, digest {report['digest'][:12]}", flush=True)
 
@@ -155,7 +155,7 @@ def _run(parsed: argparse.Namespace) -> None:
 
 def _table(parsed: argparse.Namespace) -> None:
     if not parsed.results.is_dir():
-        raise ValueError(f"{parsed.results}: found no such folder, expected one of cells, such as results/mixed")
+        raise ValueError(f"{parsed.results}: found no such folder, expected a folder of cells, such as results/mixed")
     name = parsed.results.resolve().name.removesuffix("-validation")
     if parsed.sequence is None and name not in Sequence.names():
         raise ValueError(f"{parsed.results}: found no sequence called {name!r}, expected --sequence with its name or file")
@@ -176,7 +176,7 @@ def _check(parsed: argparse.Namespace) -> None:
     wrong = [sentence for name in names for sentence in Sequence.load(name).check()]
     if wrong:
         raise ValueError("\n".join(wrong))
-    print(f"{', '.join(names)}: worlds and frames are those that the sequences were frozen with")
+    print(f"{', '.join(names)}: worlds and frames have not changed since the sequences were frozen")
 
 
 def _new(parsed: argparse.Namespace) -> None:

@@ -76,8 +76,8 @@ class Matrix:
     def coom(self, alone: Matrix) -> dict[str, float]:
         """``performance``, ``forgetting`` and ``transfer`` as COOM computes them (Tomilin et al. 2023).
 
-        Performance is the mean of every task in every row since it was learned (COOM: in all evaluations since its
-        learning began, without exact zeros). Forgetting omits the last task; transfer averages AUCs, then divides.
+        Performance is the mean over all tasks and all rows since each task was learned (COOM: over all evaluations
+        since training on it began, without exact zeros). Forgetting omits the last task; transfer averages AUCs, then divides.
         """
         rows, here, there = self.values[1:], self.areas().mean(), alone.areas().mean()
         return {

@@ -98,8 +98,8 @@ class Cell:
         found, own = _read(report), self.source()
         if own is not None and found.get("source", own) != own:
             raise ValueError(
-                f"{report.parent}: found a finished cell of {found['source']['file']} as it was (SHA-256 {found['source']['sha256'][:12]}), expected "
-                f"of {self.learner} as it is ({own['sha256'][:12]}); give another folder with -o, or delete this one"
+                f"{report.parent}: found a cell finished with another version of {found['source']['file']} (SHA-256 {found['source']['sha256'][:12]}), "
+                f"expected the current version of {self.learner} ({own['sha256'][:12]}); pass another folder with -o, or delete this one"
             )
         return found
 

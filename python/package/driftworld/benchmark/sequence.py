@@ -72,8 +72,8 @@ class Sequence:
         return sorted(each.name.removesuffix(".json") for each in _FILES.iterdir() if each.name.endswith(".json"))
 
     def curriculum(self, seed: int, split: str = "test") -> Curriculum:
-        """The lifetime of a seed, in worlds of its own. With ``split="validation"``, one for tuning, which shares no
-        world with others.
+        """The lifetime for a seed, with its own worlds. ``split="validation"`` makes one for tuning, which shares no
+        world with the others.
         """
         designed = Curriculum.design(
             *dict.fromkeys(self.tasks), name=f"{self.name}_{seed}", form="condensed", order="named", learn=self.decisions,
@@ -121,5 +121,5 @@ class Sequence:
             found = self.prints(task)
             for what, print in frozen.items():
                 if found[what] != print:
-                    wrong.append(f"{task}: found other {what} than those that the sequence {self.name} was frozen with")
+                    wrong.append(f"{task}: found different {what}, expected those that the sequence {self.name} was frozen with")
         return wrong

@@ -151,7 +151,7 @@ class Results:
 
     def _tasks(self) -> list[str]:
         lines = [
-            "Each task just after it was learned → at the end, the mean over seeds; in brackets how many of the seeds learned it.",
+            "Each task just after it was learned → at the end, the mean over seeds; in brackets, the number of seeds that learned it.",
             "",
             "| learner | " + " | ".join(f"`{task}`" for task in self.sequence.tasks) + " |",
             "|---|" + "--:|" * len(self.sequence.tasks),
@@ -181,22 +181,22 @@ def _head(sequence: Sequence) -> list[str]:
 
 _HEAD = """# Learners compared in the sequence `{sequence.name}`
 
-{sequence.about} {sequence.decisions:,} decisions a task; after each task every task is evaluated in {sequence.evaluations} worlds that nobody
-learns in. Numbers are per cent of the way from a random agent (0) to the planner (100), which knows the map and acts in every time
-step. A number is the interquartile mean over seeds of what each has over all tasks, with the 95 % interval of the bootstrap over
-seeds in brackets.
+{sequence.about} {sequence.decisions:,} decisions a task; after each task every task is evaluated in {sequence.evaluations} worlds that no
+learner trains in. Numbers are per cent of the way from a random agent (0) to the planner (100), which knows the map and acts in every time
+step. Each number is the interquartile mean over seeds of the mean over tasks, with the 95 % interval of a bootstrap over seeds in
+brackets.
 
-- *performance*: all tasks at the end, actions sampled from the policy: the number that counts. *greedy*: the same by the
-  likeliest actions.
-- *just learned*: each task right after it. *tasks learned*: the share of tasks that came to {share:.0%} there.
-- *forgetting*: just learned minus the end. *backward transfer*: the same with the other sign, without the last task.
+- *performance*: all tasks at the end, with actions sampled from the policy: the main result. *greedy*: the same with
+  the likeliest actions.
+- *just learned*: each task right after it was learned. *tasks learned*: the share of tasks that reached {share:.0%} by then.
+- *forgetting*: just learned minus the end. *backward transfer*: the same with the opposite sign, without the last task.
 - *forward transfer*: how much more was earned while learning than by `from_scratch` in the same worlds, as a share of what
   was left to gain (Continual World's measure, from learning episodes weighted by their length, one number a seed).
-- *processor s*: of acting while learning and of learning, on one core. *MB*: all that the learner keeps."""
+- *processor s*: processor seconds of acting while learning and of updates, on one core. *MB*: the learner's whole state."""
 
-_FIGURE = """Mean of all tasks after each task, actions sampled: bold the interquartile mean, thin each seed, grey `finetuning`."""
+_FIGURE = """Mean of all tasks after each task, with sampled actions. Bold: interquartile mean; thin: each seed; grey: `finetuning`."""
 
-_FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together, and few
-seeds make wide intervals: two learners whose intervals overlap are not told apart. Observations do
-not say which task it is: only surroundings tell tasks apart that contradict each other. `packnet` knows the task, in
-evaluations too, and some others know when a task begins (`borders` in `report.json`): compare rows of one kind."""
+_FOOT = """Limits: one sequence in one order, one network, one budget. Seeds vary worlds and learners together, and few seeds give wide
+intervals: learners whose intervals overlap cannot be distinguished. Observations do not
+name the task: contradictory tasks can only be distinguished by their surroundings. `packnet` knows the task, in
+evaluations too, and some others know when a task begins (`borders` in `report.json`): compare only rows of the same kind."""

@@ -18,25 +18,25 @@ from driftworld.check import Finding, Report, check, versions
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(
-        prog="python -m driftworld.check", description="Holds tasks against the contract that environments keep."
+        prog="python -m driftworld.check", description="Checks tasks against the contract of every Driftworld environment."
     )
     parser.add_argument(
-        "tasks", nargs="+", metavar="TASK", help="a task, its path, with #variant or not; a world; an id"
+        "tasks", nargs="+", metavar="TASK", help="a task or its path, with or without #variant; a world; an id"
     )
     parser.add_argument(
-        "--num-envs", type=int, default=3, help="environments of the vector ones (default: %(default)s)"
+        "--num-envs", type=int, default=3, help="number of environments in vector environments (default: %(default)s)"
     )
-    parser.add_argument("--steps", type=int, default=60, help="steps of each comparison (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=0, help="of worlds and actions (default: %(default)s)")
+    parser.add_argument("--steps", type=int, default=60, help="number of steps in each comparison (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of worlds and actions (default: %(default)s)")
     parser.add_argument(
         "--option",
         action="append",
         default=[],
         metavar="NAME=VALUE",
         type=_option,
-        help="an option of the environment, its value as JSON or as a word; may be given several times",
+        help="an option of the environment, with a value in JSON or a word; repeatable",
     )
-    parser.add_argument("--no-processes", action="store_true", help="leave the comparison with AsyncVectorEnv out")
+    parser.add_argument("--no-processes", action="store_true", help="skip the comparison with AsyncVectorEnv")
     parser.add_argument("--json", action="store_true", help="print the reports as JSON")
     asked = parser.parse_args(arguments)
     if asked.num_envs < 1 or asked.steps < 1:
@@ -72,9 +72,9 @@ def _checked(task: str, asked: argparse.Namespace) -> Report:
             processes=not asked.no_processes,
             **dict(asked.option),
         )
-    except Exception as error:  # noqa: BLE001 - Gymnasium and numpy refuse things with classes of their own
+    except Exception as error:  # noqa: BLE001 - Gymnasium and NumPy raise exceptions of their own classes
         kind = "" if isinstance(error, driftworld.DriftworldError) else f"{type(error).__name__}: "
-        advice = "python -m driftworld.check --help says what may be checked"
+        advice = "see python -m driftworld.check --help for what can be checked"
         return Report(task, (Finding("can be made", "failed", f"{kind}{error}", advice),), versions())
 
 

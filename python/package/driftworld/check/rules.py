@@ -106,7 +106,7 @@ def _same_seed_same_worlds(case: Case) -> None:
                 raise Broken(f"reset {episode}: (seed, index) {found}, expected {expected}")
 
 
-def _goes_on_from_its_state(case: Case) -> None:
+def _continues_from_its_state(case: Case) -> None:
     with closing(case.bare()) as env, closing(case.bare()) as other:
         actions = case.actions(env.action_space)
         # Takes the state earlier if episodes end within a few steps; as a last resort, before the first step.
@@ -123,7 +123,7 @@ def _goes_on_from_its_state(case: Case) -> None:
                 return
 
 
-def _can_be_sent(case: Case) -> None:
+def _can_be_copied(case: Case) -> None:
     with closing(case.bare()) as env:
         env.reset(seed=case.seed)
         for name, copied in (("copy.deepcopy", copy.deepcopy(env)), ("pickle", pickle.loads(pickle.dumps(env)))):
@@ -195,13 +195,13 @@ def _row(observations: Any, index: int) -> Any:
 
 def _equal_in_a_loop(case: Case) -> None:
     with closing(case.native()) as ours, closing(case.gymnasiums("sync")) as theirs:
-        _expect_same_lives(case, ours, theirs)
+        _expect_same_results(case, ours, theirs)
 
 
 def equal_in_processes(case: Case) -> None:
     # Spawned processes import everything again, as on other platforms; Driftworld's threads do not survive a fork.
     with closing(case.native()) as ours, closing(case.gymnasiums("async", context="spawn")) as theirs:
-        _expect_same_lives(case, ours, theirs)
+        _expect_same_results(case, ours, theirs)
 
 
 def _autoreset(mode: str) -> Callable[[Case], None]:
@@ -209,7 +209,7 @@ def _autoreset(mode: str) -> Callable[[Case], None]:
         try:
             from gymnasium.vector import AutoresetMode
         except ImportError:
-            raise NotHere(f"Gymnasium {gymnasium.__version__} has one way of autoreset only") from None
+            raise NotHere(f"Gymnasium {gymnasium.__version__} has only one autoreset mode") from None
         wanted = {"next_step": AutoresetMode.NEXT_STEP, "same_step": AutoresetMode.SAME_STEP}
         theirs_mode = wanted.get(mode, AutoresetMode.DISABLED)
         with (
@@ -220,12 +220,12 @@ def _autoreset(mode: str) -> Callable[[Case], None]:
                 raise Broken(
                     f"metadata['autoreset_mode'] is {ours.metadata.get('autoreset_mode')!r}, not {theirs_mode!r}"
                 )
-            _expect_same_lives(case, ours, theirs, resets_by_mask=mode == "disabled")
+            _expect_same_results(case, ours, theirs, resets_by_mask=mode == "disabled")
 
     return rule
 
 
-def _expect_same_lives(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bool = False) -> None:
+def _expect_same_results(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bool = False) -> None:
     """Runs both with the same seeds and actions; everything that they return must be equal."""
     _expect_same(ours.single_observation_space, theirs.single_observation_space, "single_observation_space")
     _expect_same(ours.single_action_space, theirs.single_action_space, "single_action_space")
@@ -242,7 +242,7 @@ def _expect_same_lives(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bo
             one, other = (env.reset(options={"reset_mask": ended.copy()}) for env in (ours, theirs))
             _expect_same(one, other, f"reset by mask after step {number}")
     if num_ends == 0 and case.steps > 2 * SHORT_EPISODE and "max_episode_steps" not in case.options:
-        raise Broken(f"no episode ended in {case.steps} steps, though each may have {SHORT_EPISODE} at most")
+        raise Broken(f"no episode ended in {case.steps} steps, although each is limited to {SHORT_EPISODE}")
 
 
 _PARTS = ("observations", "rewards", "terminated", "truncated", "infos")
@@ -256,24 +256,24 @@ RULES = (
     Rule(
         "Stable-Baselines3's check_env, without a warning",
         _passes_sb3s_check,
-        'it takes images of 36 x 36 or more and of uint8 only: modalities="rgb", or depth="uint8" and no class, no instance',
+        'it accepts only uint8 images of at least 36 x 36: modalities="rgb", or depth="uint8" without class and instance',
     ),
     Rule(
-        "same seed, same worlds, one after the other",
+        "same seed, same sequence of worlds",
         _same_seed_same_worlds,
         "please report it with the task and the seed: worlds are a function of task, seed and index",
     ),
     Rule(
-        "goes on from state() to the last bit", _goes_on_from_its_state, "please report it with the task and the seed"
+        "continues from state(), bit for bit", _continues_from_its_state, "please report it with the task and the seed"
     ),
-    Rule("copies and pickles live the same life", _can_be_sent, "please report it with the options"),
+    Rule("copies and pickles behave identically", _can_be_copied, "please report it with the options"),
     Rule('render() draws with render_mode="rgb_array"', _draws_pictures, "please report it with the options"),
-    Rule('a window shows it with render_mode="human"', _opens_a_window, "please report it with the options"),
-    Rule("closes, and closes again", _closes_twice, "please report it with the options"),
-    Rule("alone as in the batch, bit for bit", _alone_as_in_the_batch, "please report it with the task and the seed"),
-    Rule("as SyncVectorEnv, bit for bit", _equal_in_a_loop, "please report it with the task and the seed"),
-    Rule("as AsyncVectorEnv, bit for bit", equal_in_processes, "please report it with the task and the seed"),
-    Rule("autoreset in the next step, as Gymnasium's", _autoreset("next_step"), "please report it with the task"),
+    Rule('opens a window with render_mode="human"', _opens_a_window, "please report it with the options"),
+    Rule("can be closed twice", _closes_twice, "please report it with the options"),
+    Rule("a single environment matches the batch, bit for bit", _alone_as_in_the_batch, "please report it with the task and the seed"),
+    Rule("matches SyncVectorEnv, bit for bit", _equal_in_a_loop, "please report it with the task and the seed"),
+    Rule("matches AsyncVectorEnv, bit for bit", equal_in_processes, "please report it with the task and the seed"),
+    Rule("autoreset in the next step, as in Gymnasium", _autoreset("next_step"), "please report it with the task"),
     Rule(
         "autoreset in the same step, with the final observation",
         _autoreset("same_step"),

@@ -48,7 +48,7 @@ class Prepared(NamedTuple):
 
 
 class Members:
-    """The environments of a batch. It keeps only values, nothing that a user or another program may change.
+    """The environments of a batch. It holds only copies of values, so later changes to the caller's objects do not affect it.
 
     Args:
         home: The task, or the one world.
@@ -56,7 +56,7 @@ class Members:
         options: Options applied to the worlds.
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
         num_threads: Threads that step and draw; 0 means one for each processor.
-        max_episode_steps: A limit of steps in addition to the worlds' own.
+        max_episode_steps: A step limit in addition to the worlds' own.
         labels: The ids of the variants in the order of their labels; by default the task's, then the others of the
             sources.
     """
@@ -111,7 +111,7 @@ class Members:
         self._names = [""] * self.num_envs
 
     def limited(self, spec: EnvSpec | None) -> EnvSpec | None:
-        """Gymnasium's spec, with the limit of steps that options set for all worlds."""
+        """Gymnasium's spec, with the step limit that options set for all worlds."""
         if spec is not None and self._options.max_steps:
             spec = copy(spec)
             limits = [limit for limit in (spec.max_episode_steps, self._options.max_steps) if limit]
@@ -268,7 +268,7 @@ class Members:
         """
         found = self.batch.recording(env)
         if found is None:
-            raise RuntimeError("recording: found an environment that takes nothing down, expected record() before it")
+            raise RuntimeError("recording: found an environment that is not recording, expected a call of record() first")
         return found
 
     def origin(self, env: int) -> dict[str, Any]:
@@ -291,7 +291,7 @@ class Members:
         return found
 
     def ended_by(self, env: int) -> str | None:
-        """What ended an environment's episode; None for a limit of steps, which may also be a wrapper's."""
+        """What ended an environment's episode; None for a step limit, which may also be a wrapper's."""
         word = self.batch.ended_by(env)
         return None if word == "steps" else word
 
@@ -340,7 +340,7 @@ class Members:
             if locked:
                 raise ValueError(f"out: found {', '.join(locked)} read-only, expected writable arrays; nothing was changed")
             expected = ", ".join(f"{kind or 'an array'} {name} {shape}" for kind, (shape, name) in wanted.items())
-            raise ValueError(f"out: found other arrays than observations have, expected {expected}; nothing was changed")
+            raise ValueError(f"out: found arrays that do not match the observations, expected {expected}; nothing was changed")
 
     def write_into(self, out: Any) -> None:
         """Writes all observations into the given arrays."""
@@ -456,7 +456,7 @@ def _each(option: str, value: Any, count: int) -> list[Any]:
     if not isinstance(value, (list, tuple)):
         return [value] * count
     if len(value) != count:
-        raise ValueError(f"{option}: found {len(value)}, expected {count}, one for each environment that is asked")
+        raise ValueError(f"{option}: found {len(value)}, expected {count}, one for each selected environment")
     return list(value)
 
 

@@ -92,7 +92,7 @@ class Options:
         names_variant: Whether infos name task and variant.
         has_infos: Whether infos contain anything.
         libraries: The bytes of asset libraries; the last one is searched first.
-        max_steps: The limit of steps set for each world, if any.
+        max_steps: The step limit set for each world, if any.
         overrides: Overrides of each world, as JSON.
     """
 
@@ -140,8 +140,8 @@ class Options:
             raise ValueError(f'info: found "none" with task_label={task_label!r}, which needs infos, expected "agent" or "full"')
         if blank and kinds is None:
             raise ValueError(
-                'blank: found True without modalities, expected them, such as modalities=["rgb", "depth", "state"]: without, they are '
-                "what the worlds ask for"
+                'blank: found True without modalities, expected a list of them, such as modalities=["rgb", "depth", "state"]: by '
+                "default, they are those that the worlds ask for"
             )
         overrides = {
             "modalities": None if kinds is None or blank else images_among(kinds),
@@ -197,8 +197,8 @@ class Options:
 
 #: Advice for each option that hides differences between variants.
 _INSTEAD = {
-    "modalities": "; with blank=True and all their modalities each shows its own images",
-    "actions": "; actions=None is what each variant says",
+    "modalities": "; to show each variant its own images, list all their modalities and set blank=True",
+    "actions": "; actions=None keeps the actions of each variant",
 }
 
 
@@ -211,17 +211,17 @@ def coverings(found: str) -> dict[str, str]:
         option, values = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
         if "hidden" in each:
             messages[option] = (
-                f"{option}: found it over {each['hidden']}, in which {values[0][0]} and {values[1][0]} differ and which only rgb images "
-                "show, expected rgb among them, or variants that differ elsewhere: under it they are one"
+                f"{option}: found it hiding {each['hidden']}, in which {values[0][0]} and {values[1][0]} differ and which only rgb images "
+                "show, expected rgb among them, or variants that differ in other ways: with this option they are the same"
             )
             continue
         if len(values) == 1:
-            found_over = f"{values[0][0]} draws anew in each world"
+            difference = f"{values[0][0]} draws anew in each world"
         else:
-            found_over = "differs between " + " and ".join(f"{name} ({value})" for name, value in values)
+            difference = "differs between " + " and ".join(f"{name} ({value})" for name, value in values)
         messages[option] = (
-            f"{option}: found it over {each['key']}, which {found_over}, expected no such option, or variants that agree there: "
-            f"under it they are one{_INSTEAD.get(option, '')}"
+            f"{option}: found it hiding {each['key']}, which {difference}, expected no such option, or variants that agree there: "
+            f"with this option they are the same{_INSTEAD.get(option, '')}"
         )
     return messages
 
@@ -275,21 +275,21 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
     """
     for key in ("height", "width", "state_features", "instruction_len"):
         if ours[key] != theirs[key]:
-            advice = "make" if key in ("state_features", "instruction_len") else "give option size, or make"
+            advice = "make" if key in ("state_features", "instruction_len") else "pass option size, or make"
             raise ValueError(
-                f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; {advice} an environment "
-                "of its own"
+                f"variant: found {key} {theirs[key]}, expected {ours[key]}, as when the environment was made; {advice} a separate "
+                "environment"
             )
     missing = [kind for kind in theirs["modalities"] if kind not in modalities]
     if missing:
         raise ValueError(
-            f"variant: found images of {', '.join(missing)}, expected some of {', '.join(modalities)} as the environment was made "
-            "with; give option modalities with all of them, and blank=True if each variant shall show its own alone"
+            f"variant: found images of {', '.join(missing)}, expected some of {', '.join(modalities)}, as when the environment was "
+            "made; pass option modalities with all of them, and blank=True if each variant should show only its own"
         )
     if not fits_into(theirs["action"], ours["action"]):
         raise ValueError(
-            f"variant: found actions of {_words(theirs['action'])}, expected {_words(ours['action'])} as the environment was made "
-            "with; give option actions a table of rows: their third number counts where a variant lets the agent interact"
+            f"variant: found actions of {_words(theirs['action'])}, expected {_words(ours['action'])}, as when the environment was "
+            "made; pass a table of rows as option actions: the third number has an effect in variants where the agent can interact"
         )
 
 

@@ -122,7 +122,7 @@ class Home:
         self._known: dict[str, _native.Variant] = {}
         if world is not None:
             if variant is not None:
-                raise ValueError("variant: found one beside world, expected none: a world has no variants")
+                raise ValueError("variant: found a variant as well as a world, expected none: a world has no variants")
             self.world = OneWorld(*world_text(world))
             return
         self.task, named = _task(task)
@@ -147,7 +147,7 @@ class Home:
         """The worlds that the environment starts with."""
         if self.world is not None:
             return self.world
-        assert self.first is not None, "a home is of a task or of a world"
+        assert self.first is not None, "a home has either a task or a world"
         return OneVariant(self.first)
 
     def sources(
@@ -172,7 +172,7 @@ class Home:
             if self.task is None or task != self.task.name:
                 return _native.TaskSpec.load(task).variant(own)
         if self.task is None:
-            raise ValueError(f"{option}: found {name!r} in an environment of one world, expected none or task#variant")
+            raise ValueError(f"{option}: found {name!r} in an environment with a single world, expected none or task#variant")
         # A task is immutable, and finding a variant takes longer than a step of a short episode.
         if own not in self._known:
             self._known[own] = self.task.variant(own)
@@ -203,11 +203,11 @@ class Home:
         unknown = sorted(set(drift) - known)
         if unknown or "to" not in drift or "episodes" not in drift:
             raise ValueError(
-                f'drift: found {dict(drift)!r}, expected "to" and "episodes", and "schedule" and "switch" if wanted, as in '
+                f'drift: found {dict(drift)!r}, expected "to" and "episodes", and optionally "schedule" and "switch", as in '
                 '{"to": "dusk", "episodes": 500, "schedule": "cosine"}'
             )
         if self.first is None:
-            raise ValueError("drift: found one in an environment of one world, expected none: a world has no variants")
+            raise ValueError("drift: found a drift in an environment with a single world, expected none: a world has no variants")
         to = self.variant(drift["to"], "drift.to")
         schedule = json.dumps(drift.get("schedule", "linear"))
         switch = json.dumps(drift.get("switch", "at_point"))
@@ -216,7 +216,7 @@ class Home:
 
 def _episodes(found: Any) -> int:
     if isinstance(found, bool) or not isinstance(found, numbers.Integral) or found < 1:
-        raise ValueError(f"drift.episodes: found {found!r}, expected a whole number from 1 on")
+        raise ValueError(f"drift.episodes: found {found!r}, expected a whole number of at least 1")
     return int(found)
 
 

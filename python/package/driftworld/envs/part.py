@@ -99,7 +99,7 @@ class Part(gymnasium.Env[Any, Any]):
             gymnasium.logger.warn('render: found no render_mode, expected render_mode="rgb_array" when they are made')
             return None
         if not self._envs.has_begun[self._index]:
-            raise ResetNeeded("render: found an environment that had no reset, expected reset() before it")
+            raise ResetNeeded("render: found an environment that has not been reset, expected a call of reset() first")
         return self._envs.picture(self._index)
 
     def state(self) -> dict[str, Any]:
@@ -134,11 +134,11 @@ class Part(gymnasium.Env[Any, Any]):
         """
         if name in MADE_WITH:
             raise ValueError(
-                f"set_attr({name!r}): found an option that environments are made with, expected {name}={value!r} where they are "
-                'made; set_options gives each a variant or a world of its own, as in set_options({"variant": "red"})'
+                f"set_attr({name!r}): found a constructor option, expected {name}={value!r} when the environments are made; "
+                'set_options gives each its own variant or world, as in set_options({"variant": "red"})'
             )
         if hasattr(self, name) and name not in vars(self) or name in ("observation_space", "action_space", "metadata"):
             raise ValueError(
-                f"set_attr({name!r}): found what environments have of themselves, expected a name of your own; set_options gives "
-                "each a variant or a world of its own"
+                f"set_attr({name!r}): found a built-in attribute, expected a name that environments do not use; set_options gives "
+                "each its own variant or world"
             )

@@ -106,7 +106,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     @property
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """The spec of ``gymnasium.make``; its ``max_episode_steps`` is the limit of steps set by the options."""
+        """The spec of ``gymnasium.make``; its ``max_episode_steps`` is the step limit set by the options."""
         return self._spec
 
     @spec.setter
@@ -169,7 +169,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             thing did: ``opened``, ``closed``, ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the
             episode has ended successfully; and ``ended_by``: None until it has ended, then ``"all_collected"``,
             ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``, ``"return"``, ``"energy"``, ``"zone"`` or
-            ``"time"``; None also if a limit of steps truncated it, such as Gymnasium's own.
+            ``"time"``; also None if a step limit truncated it, such as Gymnasium's own.
 
         Raises:
             EnvError: After the end of an episode, or for an invalid action.
@@ -177,7 +177,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         """
         members = self._members
         if not members.has_begun[0]:
-            raise ResetNeeded("step: found an environment that had no reset, expected reset() before it")
+            raise ResetNeeded("step: found an environment that has not been reset, expected a call of reset() first")
         reward, terminated, truncated, success, eventful = members.step_one(action)
         info: dict[str, Any] = {}
         if members.has_infos:
@@ -271,8 +271,8 @@ def keys_to_action(space: gymnasium.Space[Any], layout: Mapping[str, Any]) -> di
     """The result of :meth:`DriftworldEnv.get_keys_to_action` for actions of this space in worlds of this layout."""
     if not isinstance(space, gymnasium.spaces.Box) or layout["action_model"] == "bywaypoint":
         raise ValueError(
-            'get_keys_to_action: found actions that are rows or places, expected speeds: actions="normalized" in a variant '
-            "that goes by velocity"
+            'get_keys_to_action: found actions that are rows or places, expected speeds; use actions="normalized" in a '
+            "variant that moves by velocity"
         )
     moves = {"w": (0, 1.0), "s": (0, -0.5), "a": (1, -1.0), "d": (1, 1.0), " ": (2, 1.0)}
     keys: dict[tuple[str, ...], Any] = {}

@@ -54,7 +54,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             views.
         num_threads: Threads that step and draw, at most one for each environment and four for each processor; 0 is one
             for each processor.
-        max_episode_steps: A limit of steps in addition to the worlds' own, like that of ``TimeLimit``; ``make_vec``
+        max_episode_steps: A step limit in addition to the worlds' own, like that of ``TimeLimit``; ``make_vec``
             passes it.
 
     Raises:
@@ -100,9 +100,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if isinstance(num_envs, bool) or not isinstance(num_envs, (int, np.integer)) or not 1 <= num_envs <= MOST_ENVS:
             raise ValueError(f"num_envs: found {num_envs!r}, expected a whole number in 1..{MOST_ENVS}")
         if variants is not None and variant is not None:
-            raise ValueError("variants: found variant beside it, expected one of them")
+            raise ValueError("variants: found variant as well, expected only one of the two")
         if variants is not None and drift is not None:
-            raise ValueError("variants: found drift beside it, expected one of them")
+            raise ValueError("variants: found drift as well, expected only one of the two")
         if variants is not None and (isinstance(variants, str) or len(variants) != num_envs):
             raise ValueError(f"variants: found {variants!r}, expected a list of {num_envs}, one for each environment")
         if whole("num_envs", num_envs) == 0:
@@ -140,7 +140,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """The spec of ``gymnasium.make_vec``; its ``max_episode_steps`` is the limit of steps set by the options."""
+        """The spec of ``gymnasium.make_vec``; its ``max_episode_steps`` is the step limit set by the options."""
         return self._spec
 
     @spec.setter
@@ -323,7 +323,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if not members.has_begun.all():
             waiting = np.flatnonzero(~members.has_begun).tolist()
             found = "no reset" if len(waiting) == self.num_envs else f"no reset of environments {_some(waiting)}"
-            raise ResetNeeded(f"step: found {found}, expected reset() before the first step, and again after one that was stopped")
+            raise ResetNeeded(f"step: found {found}, expected reset() before the first step, and again after an interrupted reset")
         if out is not None:
             members.expect_form(out)
         rewards, terminated, truncated, success, eventful = members.step(actions)
@@ -396,7 +396,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if self.render_mode is None:
             return None
         if not self._members.has_begun.all():
-            raise ResetNeeded("render: found environments that had no reset, expected reset() before it")
+            raise ResetNeeded("render: found environments that have not been reset, expected a call of reset() first")
         return tuple(self._camera.picture(self._members.batch, env) for env in range(self.num_envs))
 
     @property
@@ -481,10 +481,10 @@ def _some(numbers: list[int]) -> str:
 
 
 def _limit(steps: Any) -> int | None:
-    """A limit of steps as for Gymnasium's ``TimeLimit``; −1 means no limit, as for ``gymnasium.make``."""
+    """A step limit as for Gymnasium's ``TimeLimit``; −1 means no limit, as for ``gymnasium.make``."""
     if steps is None or steps == -1:
         return None
     found = whole("max_episode_steps", steps)
     if not found:
-        raise ValueError(f"max_episode_steps: found {steps!r}, expected a whole number from 1 on, or -1 for no limit")
+        raise ValueError(f"max_episode_steps: found {steps!r}, expected a whole number of at least 1, or -1 for no limit")
     return found

@@ -16,7 +16,7 @@ Known traps:
 - It takes more optimiser steps than PPO with the same number of epochs. For an equal number, use one epoch fewer.
 - The reservoir takes megabytes: ``report()["method_bytes"]`` is its size.
 - A stretch that ends during an episode is bootstrapped with the current value of its last image. An episode truncated
-  by a limit of steps is bootstrapped with the value that its last image had at the time, because that image is not
+  by a step limit is bootstrapped with the value that its last image had at the time, because that image is not
   stored.
 """
 

@@ -49,8 +49,8 @@ class Learner:
         seconds: Processor seconds spent in acting while learning, in learning, and at borders.
         task: Label of the current task, if it has one.
         tasks: Number of tasks started; 1 without borders.
-        made_with: The arguments that it was made with, and numbers and words of a method's class, by name: a log can
-            only be resumed with the same ones.
+        made_with: The constructor's arguments, and the numeric and string constants of a method's class, by name: a log
+            can only be resumed with the same ones.
 
     Raises:
         ValueError: If ``policy``, ``borders`` or ``size`` is not one of those above; or if the method overrides
@@ -118,8 +118,8 @@ class Learner:
         """Called before the first experience of each task, including the first task."""
 
     def end_task(self, label: str | None) -> None:
-        """Called at the end of a task, before :meth:`begin_task`, when everything in it has been learned from. The last
-        task of a lifetime has no end.
+        """Called at the end of a task, before :meth:`begin_task`, when everything in it has been learned from. Not called
+        for the last task of a lifetime.
         """
 
     def method_state(self) -> dict[str, Any]:
@@ -211,7 +211,7 @@ class Learner:
         """Writes :meth:`state_dict` to a file. Warns if the method keeps something that is not in it."""
         if unsaved := self._unsaved():
             warnings.warn(
-                f"{self.name}: found {', '.join(unsaved)}, but no method_state; a resumed run goes on without, and differs: return it from "
+                f"{self.name}: found {', '.join(unsaved)}, but no method_state: a resumed run would lose this state; return it from "
                 "method_state, and restore it in load_method_state",
                 stacklevel=2,
             )

@@ -117,6 +117,6 @@ class RecurrentNetwork(nn.Module):
         for step in range(length):
             state = self.memory(features[step], state * ~starts[step].unsqueeze(-1))
             states.append(state)
-        # The heads also get the image features directly: anything that needs no memory is learned as fast as without.
+        # The heads also get the image features directly: what needs no memory is learned as fast as without a GRU.
         seen = torch.stack(states) + features
         return torch.log_softmax(self.policy(seen), dim=-1), self.value(seen).squeeze(-1), state

@@ -13,12 +13,12 @@ class Rollout:
     Attributes:
         images: Bytes ``(length + 1, num_envs, size, size, 3)``.
         values: Value of each image, ``(length + 1, num_envs)``.
-        last_values: Value of an episode's last image where a limit of steps ended it, ``(length, num_envs)``.
+        last_values: Value of an episode's last image if a step limit ended the episode, ``(length, num_envs)``.
         log_policy: Log-probabilities of all actions, ``(length, num_envs, num_actions)``.
         actions: Action indices, ``(length, num_envs)``.
         rewards: Scaled rewards, ``(length, num_envs)``.
         terminated: Whether the episode terminated, ``(length, num_envs)``.
-        ended: Whether it terminated or was truncated by a limit of steps.
+        ended: Whether it terminated or was truncated by a step limit.
         active: Whether an experience was running; other steps are not learned from.
     """
 
