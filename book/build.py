@@ -96,7 +96,7 @@ def place(path: str) -> str:
     return re.sub(r"README\.md$", "index.md", out)
 
 
-def led(page: str, path: str, target: Callable[[str], str]) -> str:
+def adapted(page: str, path: str, target: Callable[[str], str]) -> str:
     """A page with its links adapted to the book; `target` maps a path from the root."""
     for link in reversed(list(links(page))):
         file, mark, anchor = link[0].partition("#")
@@ -138,7 +138,7 @@ def write_sources(folder: Path) -> None:
     for path, text in {"docs/SUMMARY.md": summary, **pages}.items():
         out = folder / place(path)
         out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(led(text, path, target), encoding="utf-8")
+        out.write_text(adapted(text, path, target), encoding="utf-8")
 
 
 def build(book: Path) -> None:
@@ -160,7 +160,7 @@ def main() -> None:
         build(Path(sys.argv[1]))
         findings = of_book(Path(sys.argv[1]))
     if findings:
-        sys.exit("\n".join([*findings, f"{len(findings)} broken links; correct them, or restore what they led to"]))
+        sys.exit("\n".join([*findings, f"{len(findings)} broken links; correct them, or restore their targets"]))
 
 
 if __name__ == "__main__":

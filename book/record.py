@@ -40,13 +40,13 @@ COLUMNS, ROWS = 80, 24
 BLOCK = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 HEAD = """# The first hour, recorded
 
-What stands on a terminal of 80 columns when the commands of [the first hour](first-hour.md) are typed one after the other.
-Files are saved between them, as the page says.
+The contents of an 80-column terminal after typing the commands of [the first hour](first-hour.md) one after the other.
+Files are saved between commands, as the page says.
 
 ![A terminal in which the commands of the first hour are typed](images/first-hour.svg)
 
 The recording itself is [first-hour.cast](recordings/first-hour.cast), for `asciinema play`. The tests compare it with what
-the commands print. `python book/record.py target/release/driftworld` records it anew. All of it:
+the commands print. `python book/record.py target/release/driftworld` records it again. The whole screen:
 
 """
 # Seconds to type a word and to read a line; the minimum and maximum for all lines of a command.
@@ -157,7 +157,7 @@ def check() -> None:
     """Fails if the files disagree, a command of the tutorial is missing, or a line is wider than the terminal."""
     events = read(CAST.read_text(encoding="utf-8"))
     wrong = [
-        f"{path.relative_to(ROOT)} is not what the recording makes"
+        f"{path.relative_to(ROOT)} does not match the recording"
         for path, made in ((PAGE, page(events)), (PICTURE, picture(events, COLUMNS, ROWS)))
         if path.read_text(encoding="utf-8") != made
     ]
@@ -170,7 +170,7 @@ def check() -> None:
     begin = shown.index("```text")
     wrong += [f"too wide: {line}" for line in shown[begin:] if len(line) > COLUMNS and not line.startswith("$")]
     if wrong:
-        sys.exit("\n".join([*wrong, "python book/record.py PROGRAM records it anew"]))
+        sys.exit("\n".join([*wrong, "python book/record.py PROGRAM records it again"]))
 
 
 def main() -> None:

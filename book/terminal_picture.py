@@ -40,7 +40,7 @@ def screen(text: str, columns: int) -> list[Line]:
         elif part == "\x1b[2K":
             lines[row] = []
         elif part.startswith("\x1b"):
-            message = f"a terminal is not asked for {part!r} anywhere else"
+            message = f"found the escape sequence {part!r}, expected only colours and erased lines"
             raise ValueError(message)
         else:
             for letter in part:

@@ -56,4 +56,4 @@ if __name__ == "__main__":
     if "--check" not in sys.argv[1:]:
         PAGE.write_text(page(ROWS), encoding="utf-8")
     elif not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != page(ROWS):
-        sys.exit("docs/bugs-you-know.md: found another page; run python scripts/bugs.py")
+        sys.exit("docs/bugs-you-know.md: found a page that does not match docs/bugs.json; run python scripts/bugs.py")

@@ -72,9 +72,9 @@ ELSEWHERE = {
 
 #: Reasons why the planner succeeds in less than 99 % of the worlds.
 REASONS = {
-    "find_objects#penalty": "The cubes cost, so that it is best to touch none: nobody succeeds.",
-    "find_objects#slow": "Its time does not always suffice.",
-    "moving_object#stings": "The balls cost, so that it is best to touch none: nobody succeeds.",
+    "find_objects#penalty": "The cubes cost, so it is best to touch none: nobody succeeds.",
+    "find_objects#slow": "The time limit is sometimes too short.",
+    "moving_object#stings": "The balls cost, so it is best to touch none: nobody succeeds.",
 }
 
 
@@ -196,8 +196,8 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], descriptions
     lines += [
         "", "*differs in*: the elements in which the variant differs from the first, found by experiment (`driftworld elements`);",
         "`p`: where things are at the start, `phi`: how a state looks.",
-        "*distance*: from the first, by worlds (`driftworld distance A B --worlds 20`), not by parameters as without `--worlds`.",
-        f"*random*, *planner*: mean reward in {WORLDS} worlds. *succeeds*: how often the planner does.", "",
+        "*distance*: from the first variant, by worlds (`driftworld distance A B --worlds 20`; by parameters without `--worlds`).",
+        f"*random*, *planner*: mean reward in {WORLDS} worlds. *succeeds*: the planner's success rate.", "",
         *(f"`{each}`: {REASONS[f'{name}#{each}']}\n" for each in measured if f"{name}#{each}" in REASONS),
         f"![Variants of {name}](../images/families/{name}.png)", "",
     ]  # fmt: skip
@@ -205,7 +205,7 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], descriptions
         first = next(iter(measured))
         lines += [
             f"![Learning curves of {name}](../images/families/{name}.svg)", "",
-            f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`. Afterwards, each seed, actions sampled:", "",
+            f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`. After training, for each seed, with sampled actions:", "",
             result_lines(runs, measured[first]), "",
         ]  # fmt: skip
     lines += [
@@ -234,12 +234,12 @@ def pages(command: str, docs: Path = ROOT / "docs") -> None:
         listed.setdefault(task["group"], []).append(row)
     parts = [
         "# The families", "", "Every task that comes with Driftworld, by name in each command, in Python, and as a Gymnasium id",
-        "(`driftworld/KeyCorridor-v0`). Rewards are those of the first variant. *PPO*: what it comes to in 100,000 decisions of 32 × 32 pixels,",
-        "in per cent of the way from random to the planner, the mean of the seeds on its page; in families of memory then recurrent PPO, too.", "",
+        "(`driftworld/KeyCorridor-v0`). Rewards are those of the first variant. *PPO*: its reward after 100,000 decisions of 32 × 32 pixels,",
+        "in per cent of the way from random to the planner, averaged over the seeds on the family's page; in memory families, recurrent PPO follows.", "",
         "![The first variant of each family](images/families.png)", "",
     ]  # fmt: skip
     for group, rows in listed.items():
-        parts += [f"## {group.capitalize()}", "", "| family | what is to be done | variants | random | planner | PPO |", "|---|---|--:|--:|--:|--:|", *rows, ""]
+        parts += [f"## {group.capitalize()}", "", "| family | task | variants | random | planner | PPO |", "|---|---|--:|--:|--:|--:|", *rows, ""]
     (docs / "families.md").write_text("\n".join(parts), encoding="utf-8")
     lines = [line for line in (ROOT / "docs/SUMMARY.md").read_text(encoding="utf-8").splitlines() if "](families/" not in line]
     index = lines.index("- [The families](families.md)") + 1

@@ -27,4 +27,4 @@ for target in "$@"; do
     DRIFTWORLD_FUZZ_TARGET="$target" "../target/fuzz/$machine/release/fuzz" "${options[@]}" "corpus/$target" "seeds/$target" \
         2>&1 | grep -v "pulse\|NEW\|REDUCE\|RELOAD" || broken+=("$target")
 done
-[ "${#broken[@]}" -eq 0 ] || { echo "laws broken: ${broken[*]}; the input is in fuzz/artifacts/, and makes a seed once it is mended"; exit 1; }
+[ "${#broken[@]}" -eq 0 ] || { echo "laws broken: ${broken[*]}; the input is in fuzz/artifacts/; add it to the seeds once the bug is fixed"; exit 1; }

@@ -4,7 +4,7 @@ scripts/families.py draws curves.
     nice python scripts/learn_families.py [NAME]... [--seeds 3] [--jobs 2]
 
 Records for each seed the mean reward of episodes in ten equal parts of the training, weighted by their decisions, and
-afterwards the mean reward and the success rate in 100 other worlds, with sampled actions. In the families of memory
+afterwards the mean reward and the success rate in 100 other worlds, with sampled actions. In the memory families,
 recurrent PPO is trained too. Entries already in the file are not run again. Needs PyTorch.
 """
 

@@ -81,7 +81,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", default=list(TRAINED))
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--film", metavar="COMMAND", help="draw the README's film anew by this command")
+    parser.add_argument("--film", metavar="COMMAND", help="redraw the README's film with this command")
     arguments = parser.parse_args()
     pending = [name for name in arguments.names if not (NETWORKS / f"{name}.safetensors").is_file()]
     with ProcessPoolExecutor(arguments.jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:

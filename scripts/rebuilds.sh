@@ -26,6 +26,6 @@ for profile in debug release; do
     done
 done
 [ "$found" = 0 ] || {
-    echo "rebuilds: see who asks which features of it (cargo tree -e features -i CRATE --workspace), and name it with all of them in features/Cargo.toml" >&2
+    echo "rebuilds: find which of its features each crate requests (cargo tree -e features -i CRATE --workspace), and list it with all of them in features/Cargo.toml" >&2
     exit 1
 }

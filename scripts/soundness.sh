@@ -3,8 +3,8 @@
 # Runs tests under tools that detect memory errors of unsafe and foreign code, on x86-64 Linux; all three take half an hour.
 # Needs a nightly Rust: rustup toolchain install nightly --component miri --component rust-src
 #
-# miri does not run AVX-512, whose instructions it does not know, and meshopt's C++ (address runs both), whole pictures, worlds
-# and batches, which would take minutes each (address and threads run them), and Python, whose only view is read-only. address
+# miri skips AVX-512, which it does not support, and meshopt's C++ (address runs both); whole pictures, worlds and batches, which
+# would take minutes each (address and threads run them); and Python, whose only view is read-only. address
 # ignores leaks, because nothing is freed by hand and the test harness leaks. threads runs only code that starts threads.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -37,19 +37,19 @@ def parse_arguments() -> argparse.Namespace:
     """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
-    parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the network, the actions and the worlds (default: 1)")
     parser.add_argument("--steps", type=int, default=250_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
-    parser.add_argument("--episodes", type=int, default=200, help="of the evaluation")
+    parser.add_argument("--episodes", type=int, default=200, help="number of evaluation episodes")
     parser.add_argument(
-        "--policy", choices=["sampled", "greedy"], default="sampled", help="how it acts in the evaluation"
+        "--policy", choices=["sampled", "greedy"], default="sampled", help="how the policy acts in the evaluation"
     )
-    parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
+    parser.add_argument("--threads", type=int, default=2, help="number of PyTorch threads")
     parser.add_argument(
-        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="record the result"
     )
-    parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="run a few updates, to check that it works")
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.steps, arguments.num_envs, arguments.rollout, arguments.threads = 1024, 8, 32, 1

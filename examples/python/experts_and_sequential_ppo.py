@@ -119,7 +119,7 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
     if record_file.exists() and not arguments.again:
         done: dict[str, Any] = json.loads(record_file.read_text(encoding="utf-8"))
         if done["made_with"] == made_with and "results" in done:
-            print(f"{agent}: found in {folder}, not run again (--again does)")
+            print(f"{agent}: found in {folder}, not run again (--again reruns it)")
             return done
     shutil.rmtree(folder, ignore_errors=True)
     watch = Watch()
@@ -158,22 +158,22 @@ def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]
 def parse_arguments(program: str, text: str) -> argparse.Namespace:
     """Parses the command line of this example and of `replay_ppo.py`."""
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="seeds, one lifetime each (default: 1)")
     parser.add_argument("--learn", type=int, default=1536, help="experiences of a learning block (default: 1536)")
     parser.add_argument(
-        "--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)"
+        "--evaluate", type=int, default=128, help="experiences of each variant in an evaluation block (default: 128)"
     )
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument(
-        "--policy", choices=["sampled", "greedy"], default="sampled", help="how it acts in evaluations (default: sampled)"
+        "--policy", choices=["sampled", "greedy"], default="sampled", help="how the policy acts in evaluations (default: sampled)"
     )
-    parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
-    parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
-    parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
+    parser.add_argument("--threads", type=int, default=2, help="number of PyTorch threads")
+    parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="folder for the logs")
+    parser.add_argument("--again", action="store_true", help="rerun lifetimes that have a finished log")
     parser.add_argument(
-        "--results", nargs="?", const=result_folder(program), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(program), metavar="FOLDER", help="record the result"
     )
-    parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="run a few experiences, to check that it works")
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.learn, arguments.evaluate, arguments.num_envs, arguments.threads = 16, 8, 8, 1
@@ -270,10 +270,10 @@ def main() -> None:
         runs = [*experts.values(), *lifetimes.values()]
         Record(
             title="Experts, and a sequential PPO",
-            text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
-            f"{arguments.learn} experiences each, and is evaluated in both around each block ({arguments.evaluate} worlds each, {arguments.policy} "
+            text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO learns {', '.join(ORDER)} in turn, "
+            f"{arguments.learn} experiences each, and is evaluated on both before and after each block ({arguments.evaluate} worlds each, {arguments.policy} "
             f"policy); experts are the same learner with the same experience of one variant alone, evaluated in the same worlds. "
-            f"{sample_size_note(arguments.seeds)} The curve is of the evaluations.",
+            f"{sample_size_note(arguments.seeds)} The curve shows the evaluations.",
             settings={**vars(arguments), **OPTIONS, "optimiser_steps": [done["optimiser_steps"] for done in lifetimes.values()]},
             variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
             curve=evaluations(lifetimes), lines=levels(experts), table=table, axes=("experiences", "reward"),
@@ -286,8 +286,8 @@ def main() -> None:
 def sample_size_note(seeds: list[int]) -> str:
     """States the number of lifetimes, and what can be concluded from them."""
     if len(seeds) == 1:
-        return "One lifetime (n = 1): what it shows of this seed need not hold for another, and no difference can be told from luck."
-    return f"n = {len(seeds)} lifetimes, each with worlds and a network of its own."
+        return "One lifetime (n = 1): results for this seed need not hold for others, and differences may be due to chance."
+    return f"n = {len(seeds)} lifetimes, each with its own worlds and network."
 
 
 if __name__ == "__main__":

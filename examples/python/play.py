@@ -30,14 +30,14 @@ def main() -> None:
         "--variant",
         help="one of its variants (`driftworld tasks show TASK` lists them)",
     )
-    parser.add_argument("--seed", type=int, default=0, help="of the worlds (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the worlds (default: %(default)s)")
     parser.add_argument(
         "--camera",
         default="both",
         choices=["agent", "above", "both"],
-        help="what is shown",
+        help="the view to show",
     )
-    parser.add_argument("--quick", action="store_true", help="without a display, end after 20 steps")
+    parser.add_argument("--quick", action="store_true", help="run without a display, and end after 20 steps")
     arguments = parser.parse_args()
     if arguments.quick:
         os.environ["SDL_VIDEODRIVER"] = "dummy"

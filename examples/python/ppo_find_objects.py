@@ -144,16 +144,16 @@ def parse_arguments() -> argparse.Namespace:
     """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="one run each (default: 1)")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="seeds, one run each (default: 1)")
     parser.add_argument("--steps", type=int, default=300_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
-    parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")
-    parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
+    parser.add_argument("--episodes", type=int, default=200, help="number of episodes in each evaluation")
+    parser.add_argument("--threads", type=int, default=2, help="number of PyTorch threads")
     parser.add_argument(
-        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="record the result"
     )
-    parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="run a few updates, to check that it works")
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.steps, arguments.num_envs, arguments.rollout, arguments.episodes = 1024, 8, 64, 8
@@ -191,7 +191,7 @@ def main() -> None:
                 "minutes": round(rows[-1]["seconds"] / 60, 1),
                 f"reward in {scored['episodes']} worlds never learned from": scored["reward"],
                 "standard deviation of episodes": scored["deviation"],
-                "of them with all cubes found": scored["success"],
+                "share with all cubes found": scored["success"],
             })  # fmt: skip
         if arguments.results:
             # Write the results so far, so that an interrupted run keeps its finished seeds.
@@ -227,9 +227,9 @@ def write_result(
     Record(
         title="PPO finds objects",
         text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each second costs 1, "
-        "each action is held for five time steps (half a second); 60 actions make an episode. The expert knows the map; one holds its "
-        f"actions as long, the other acts anew in each of 300 time steps. n = {len(done)}: seeds of learning, which share no world. All are "
-        "evaluated in the same worlds; an interval is over seeds (95 %), and says nothing of other worlds of evaluation.",
+        "each action is held for five time steps (half a second); an episode is 60 actions. The planner knows the map; one holds its "
+        f"actions as long, the other acts in each of 300 time steps. n = {len(done)} seeds of learning, which share no world. All agents are "
+        "evaluated in the same worlds; 95 % intervals are over seeds, and do not cover the choice of these worlds.",
         settings={"id": ID, **vars(arguments), "seeds": done, **OPTIONS, "evaluation_seed": EVALUATION_SEED},
         variants=[f"find_objects#{arguments.variant}"],
         seeds=[*done, EVALUATION_SEED],

@@ -123,17 +123,17 @@ def connect(address: str | None, workers: int) -> None:
 def parse_arguments() -> argparse.Namespace:
     """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--variants", type=int, default=20_000, help="how many are drawn (default: 20000)")
+    parser.add_argument("--variants", type=int, default=20_000, help="number of variants to draw (default: 20000)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
-        "--shard-size", type=int, default=500, help="variants of a shard; part of what the digest is of"
+        "--shard-size", type=int, default=500, help="number of variants in a shard; affects the digest"
     )
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="how many work at the same time")
-    parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="number of parallel workers")
+    parser.add_argument("--address", help="address of a running Ray cluster, such as auto or ray://HOST:10001")
     parser.add_argument(
-        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="write the result down"
+        "--results", nargs="?", const=result_folder(__file__), metavar="FOLDER", help="record the result"
     )
-    parser.add_argument("--quick", action="store_true", help="a few variants, to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="measure a few variants, to check that it works")
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.variants, arguments.shard_size = 60, 10
@@ -156,8 +156,8 @@ def main() -> None:
         histogram = answer["distance"]["histogram"]
         Record(
             title="A million variants, by shard" if arguments.variants == 1_000_000 else f"{arguments.variants:,} variants, by shard",
-            text="Variants of `find_objects` drawn over the whole ranges of six parameters, each measured against `blue`, a world sampled "
-            f"of each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
+            text="Variants of `find_objects` drawn over the whole ranges of six parameters, each compared with `blue`, and one world "
+            f"sampled from each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
             # Empty bins are left out.

@@ -161,7 +161,7 @@ class Record:
                 writer.writerows(self.curve)
             self._draw(folder / "curve.png")
         (folder / "README.md").write_text(self._page(config), encoding="utf-8")
-        print(f"written down in {folder}")
+        print(f"recorded in {folder}")
 
     def _config(self) -> dict[str, Any]:
         return {
@@ -179,22 +179,22 @@ class Record:
         package_versions = ", ".join(f"{name} {version}" for name, version in versions.items())
         provenance = (
             f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores "
-            f"({machine['processor']}; load of the machine before it began {machine['load_before']}), with {package_versions}."
+            f"({machine['processor']}; load average before the run {machine['load_before']}), with {package_versions}."
         )
         parts = [f"# {self.title}", "", self.text, "", "```sh", config["command"], "```", ""]
         if self.curve:
             parts += ["![The curve: " + self.labels[1] + ", by " + self.labels[0] + "](curve.png)", ""]
         parts += [*_table(self.table), ""]
         if self.lines:
-            parts += [*_table([{"to compare with": name, "reward": level} for name, level in self.lines.items()]), ""]
+            parts += [*_table([{"for comparison": name, "reward": level} for name, level in self.lines.items()]), ""]
         parts += [
             provenance,
             "",
-            "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
+            "All settings, and the hashes of the variants and of the first worlds, are in [config.json](config.json).",
         ]
         kept = [*(["curve.csv"] if self.curve else []), *self.files]
         if kept:
-            parts += ["Beside it: " + ", ".join(f"[{name}]({name})" for name in kept) + "."]
+            parts += ["Other files: " + ", ".join(f"[{name}]({name})" for name in kept) + "."]
         parts += [""]
         return "\n".join(parts)
 

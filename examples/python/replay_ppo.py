@@ -69,7 +69,7 @@ def main() -> None:
             text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
             "in the style of CLEAR, and the same number of optimiser steps. "
             "Each learner is compared with experts of its own kind. "
-            f"Evaluations by the {arguments.policy} policy. {sample_size_note(arguments.seeds)} The curve is of the evaluations; the time is that of the "
+            f"Evaluations by the {arguments.policy} policy. {sample_size_note(arguments.seeds)} The curve shows the evaluations; the time is that of the "
             "lifetimes with replay alone.",
             settings={**vars(arguments), **OPTIONS, "optimiser_steps": steps}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
             curve=evaluations(with_replay, ", replay") + evaluations(without, ", sequential"), lines=levels(experts), table=table, axes=("experiences", "reward"),

@@ -87,13 +87,13 @@ def configuration(arguments: argparse.Namespace) -> PPOConfig:
 def parse_arguments() -> argparse.Namespace:
     """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
-    parser.add_argument("--runners", type=int, default=2, help="env runners, a processor each (default: 2)")
-    parser.add_argument("--num-envs", type=int, default=32, help="of all runners together")
+    parser.add_argument("--address", help="address of a running Ray cluster, such as auto or ray://HOST:10001")
+    parser.add_argument("--runners", type=int, default=2, help="number of env runners, one processor each (default: 2)")
+    parser.add_argument("--num-envs", type=int, default=32, help="environments over all runners")
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--iterations", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--quick", action="store_true", help="two small updates, to see that it runs")
+    parser.add_argument("--quick", action="store_true", help="run two small updates, to check that it works")
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.num_envs, arguments.iterations = 16, 2

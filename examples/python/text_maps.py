@@ -80,7 +80,7 @@ class Map:
         """The agent's start: the first marked position, else the first free cell; `None` if no cell is free."""
         if self.starts:
             if len(self.starts) > 1:
-                self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
+                self.warn("", f"the agent has {len(self.starts)} possible starts; the first is used")
             return self.starts[0]
         self.warn("", "nothing says where the agent starts; it starts in the first free cell")
         occupied = {at for _, at in [*self.objects, *self.doors]} | set(self.lava)
@@ -173,7 +173,7 @@ def dmlab(name: str, text: str) -> dict[str, Any]:
     level, lines = Map(name, 3.125), text.splitlines()
     end = variations(lines)
     if end < len(lines):
-        level.warn(f":{end + 1}:1", "the variations layer is left out: it says how rooms look")
+        level.warn(f":{end + 1}:1", "the variations layer, which says how rooms look, is ignored")
     for number, line in enumerate(lines[:end]):
         if not line:
             continue

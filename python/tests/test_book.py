@@ -57,5 +57,5 @@ def test_heading_anchors_match_links(book: Any) -> None:
 
 def test_links_are_adapted_to_the_book(book: Any) -> None:
     page = "[a](../docs/worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
-    assert book.led(page, "examples/README.md", book.place) == "[a](../../worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
+    assert book.adapted(page, "examples/README.md", book.place) == "[a](../../worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
     assert book.place("docs/how-to/README.md") == "how-to/index.md"

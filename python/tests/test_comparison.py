@@ -32,7 +32,7 @@ def test_changed_page_is_reported(compare: ModuleType, tmp_path: Path, monkeypat
     other.write_text(compare.page().replace("| MiniGrid |", "| MiniGird |"), encoding="utf-8")
     monkeypatch.setattr(compare, "PAGE", other)
     monkeypatch.setattr(sys, "argv", ["compare.py", "page", "--check"])
-    with pytest.raises(SystemExit, match="found another page"):
+    with pytest.raises(SystemExit, match="found a page that does not match the logs"):
         compare.main()
 
 

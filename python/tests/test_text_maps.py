@@ -66,9 +66,9 @@ def test_dmlab_level_gives_walls_objects_and_warnings(maps: ModuleType, capsys: 
     assert world["rules"] == {"success": [{"touch": "goal"}]}
     assert [door["heading"] for door in tagged(world, "door")] == [90.0, 0.0]
     assert capsys.readouterr().err.splitlines() == [
-        "warning: level.txt:9:1: the variations layer is left out: it says how rooms look",
+        "warning: level.txt:9:1: the variations layer, which says how rooms look, is ignored",
         "warning: level.txt:4:3: the letter 'Q' is not known; it is read as floor",
-        "warning: level.txt: of 2 places where the agent may start, it starts in the first",
+        "warning: level.txt: the agent has 2 possible starts; the first is used",
     ]
 
 

@@ -96,7 +96,7 @@ pub(crate) fn run(page: &str) {
 
 /// Removes the commands of a block from a recording, and compares their output.
 fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded>) {
-    let advice = "python book/record.py target/release/driftworld records it anew";
+    let advice = "python book/record.py target/release/driftworld records it again";
     let (mut commands, mut output) = (String::new(), String::new());
     while commands.len() < block.text.len() && !recorded.is_empty() {
         let next = recorded.remove(0);

@@ -282,15 +282,15 @@ def page() -> str:
     texts = {
         "count": NUMBERS[len(shown)], "names": joined([label for key, label in named["systems"].items() if key in shown]),
         "benchmarks": "[Benchmarks](benchmarks.md)",  # A link relative to docs/, where the template is not.
-        "compiled": f"in {spread(compiled, '.1f')} seconds of the processor" if compiled else "not measured here",
+        "compiled": f"in {spread(compiled, '.1f')} processor seconds" if compiled else "not measured here",
         "unfinished": f"**Not finished**: of {len(SEEDS)} seeds these are missing: {unfinished}. `compare.py run` runs them. " * bool(unfinished),
         "learned": table(
             ["system", "task", "seeds", "first 100, %", "last 100, %", "learned", "after, thousand decisions",
-             "minutes of a core", "decisions a second", "environment's part"], learned),
+             "core minutes", "decisions a second", "environment's part"], learned),
         "alone": table(["system", "task", "decisions a second", "range", "steps of the engine a second"], alone),
         "beside": table(["peer", "ours", "peer's rate", "our rate", "ratio", "range of ratios"], beside),
         "installed": table(
-            ["system", "what it needs beside Python", "seconds", "load average", "MB on disk"],
+            ["system", "requirements besides Python", "seconds", "load average", "MB on disk"],
             [[named["systems"][key], named["needs"][key], f"{each['seconds']:.0f}", f"{each['load']:.0f}", f"{each['megabytes']}"] for key, each in installed.items()]),
         "decisions": f"{head['decisions']:,}", "size": str(head["size"]), "num_envs": str(head["num_envs"]), "settings": settings,
         "load": spread(loads, ".0f"), "speed_load": spread([row["load"] for row in measured], ".0f"),
@@ -316,27 +316,27 @@ def main() -> None:
     """Runs the command."""
     global LOGS, PAGE
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--envs", type=Path, default=ROOT / "target/comparison", help="where the environments of Python are")
+    parser.add_argument("--envs", type=Path, default=ROOT / "target/comparison", help="folder of the Python environments")
     parser.add_argument("--jaxenstein", type=Path, metavar="CHECKOUT", help="a checkout of JAXenstein's repository; without it, JAXenstein is left out")
-    parser.add_argument("--logs", type=Path, help="another folder for the logs, which then also gets the page")
+    parser.add_argument("--logs", type=Path, help="another folder for the logs and the page")
     building, working, running, measuring = (argparse.ArgumentParser(add_help=False) for _ in range(4))
     building.add_argument("wheel", type=Path)
-    building.add_argument("--torch", type=Path, metavar="SITE_PACKAGES", help="packages with torch that are there already, in place of new ones")
-    working.add_argument("--cores", default="0", help="such as 0,1: a run at a time on each; rates are measured on the first")
+    building.add_argument("--torch", type=Path, metavar="SITE_PACKAGES", help="an existing site-packages folder with torch, instead of installing torch")
+    working.add_argument("--cores", default="0", help="cores to use, such as 0,1: one run at a time on each; rates are measured on the first")
     names = [*tasks()["tasks"], *tasks()["rates"]]
-    working.add_argument("--only", action="append", default=[], choices=names, metavar="NAME", help=f"one alone, repeatable: {', '.join(names)}")
-    working.add_argument("--anew", action="store_true", help="remove the logs first; without it, what they have is not done again")
+    working.add_argument("--only", action="append", default=[], choices=names, metavar="NAME", help=f"only this task or rate, repeatable: {', '.join(names)}")
+    working.add_argument("--anew", action="store_true", help="remove the logs first; by default, logged runs are not repeated")
     running.add_argument("--seeds", type=int, default=len(SEEDS))
-    running.add_argument("--decisions", type=int, help="another budget, to try it")
+    running.add_argument("--decisions", type=int, help="a different budget, for a trial")
     measuring.add_argument("--repeats", type=int, default=3)
-    measuring.add_argument("--seconds", type=float, default=2.0, help="of the processor, for each rate in each repeat")
+    measuring.add_argument("--seconds", type=float, default=2.0, help="processor seconds for each rate in each repeat")
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("all", parents=[building, working, running, measuring])
     installing = commands.add_parser("install", parents=[building])
-    installing.add_argument("--only", action="append", default=[], choices=[*SYSTEMS, "learner"], help="one environment alone; repeatable")
+    installing.add_argument("--only", action="append", default=[], choices=[*SYSTEMS, "learner"], help="only this environment; repeatable")
     commands.add_parser("run", parents=[working, running])
     commands.add_parser("speed", parents=[working, measuring])
-    commands.add_parser("page").add_argument("--check", action="store_true", help="fail if the page is not that of the logs")
+    commands.add_parser("page").add_argument("--check", action="store_true", help="fail if the page does not match the logs")
     given = parser.parse_args()
     if given.logs:
         LOGS, PAGE = given.logs.resolve(), given.logs.resolve() / "comparison.md"
@@ -349,7 +349,7 @@ def main() -> None:
         speed(systems, int(given.cores.split(",")[0]), given.repeats, given.seconds, given.only, given.anew)
     if given.command == "page" and given.check:
         if PAGE.read_text(encoding="utf-8") != page():
-            raise SystemExit("docs/comparison.md: found another page than that of the logs; run python examples/python/comparison/compare.py page")
+            raise SystemExit("docs/comparison.md: found a page that does not match the logs; run python examples/python/comparison/compare.py page")
     elif everything or given.command == "page":
         write(PAGE, page())
 

@@ -90,7 +90,7 @@ learners = {
 }
 for name, learner in learners.items():
     curriculum.run_vector(learner, LOGS / name, check_frozen=False, **RUN)
-    print(f"{name}: {learner.seconds:.0f} s of the processor")
+    print(f"{name}: {learner.seconds:.0f} processor seconds")
 
 # %% [markdown]
 # ## What is left
