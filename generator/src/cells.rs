@@ -136,7 +136,7 @@ impl<'a> Cells<'a> {
             format!("of {all} cells{of_them}, {count} are {asked}")
         };
         if fitting.is_empty() {
-            return Err(format!("{asked}; ask for less, or change the layout"));
+            return Err(format!("{asked}; relax the request, or change the layout"));
         }
         Ok(Self {
             plan,

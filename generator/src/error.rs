@@ -48,7 +48,7 @@ pub enum GeneratorError {
     /// The agent starts outside the arena or in a region that cannot be entered.
     #[error(
         "{world}: found the agent's start at {start:?} in {}, expected free space inside the arena; move \
-         agent_params.coordinates, or widen their distribution; in mazes, rooms and texts {{ \"cells\": {{}} }} is any \
+         agent_params.coordinates, or widen their distribution; in mazes, rooms and texts {{ \"cells\": {{}} }} means any \
          free cell",
         tried(*tries)
     )]
@@ -70,7 +70,7 @@ pub enum GeneratorError {
     },
     /// One of the task's requirements failed in every try.
     #[error(
-        "{world}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" states; the last were \
+        "{world}: found no values in {tries} tries that satisfy the requirement {requirement:?}; the last were \
          {values}; widen the distributions, or relax the requirement"
     )]
     Requirement {
@@ -93,8 +93,8 @@ pub enum GeneratorError {
         /// Maximum number of objects in a world.
         limit: usize,
     },
-    /// The drawn values do not fit together in one world, such as large images with much supersampling.
-    #[error("{world}: drew values that do not go together: {source}")]
+    /// The drawn values are incompatible, such as large images with much supersampling.
+    #[error("{world}: drew incompatible values: {source}")]
     Clash {
         /// The world.
         world: WorldId,
@@ -113,7 +113,7 @@ pub enum GeneratorError {
         to: String,
     },
     /// A variant along a drift is invalid.
-    #[error("on the way of the drift: {0}")]
+    #[error("along the drift: {0}")]
     Between(#[source] SpecError),
     /// A search for a distance has no parameter to change.
     #[error(
@@ -128,7 +128,7 @@ pub enum GeneratorError {
     },
     /// No variant is as far away as requested.
     #[error(
-        "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for less, or vary \
+        "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for a smaller distance, or vary \
          more parameters"
     )]
     TooFar {
@@ -143,7 +143,7 @@ pub enum GeneratorError {
     },
     /// The choices leave a gap around the requested distance.
     #[error(
-        "{variant}: found {nearest:.6} at the nearest ({values}), expected a distance of {target} within {tolerance}; \
+        "{variant}: found a nearest distance of {nearest:.6} ({values}), expected {target} within {tolerance}; \
          widen the tolerance, or vary a parameter with a range"
     )]
     NoneBetween {

@@ -97,7 +97,7 @@ impl Condition {
             Self::Agent => "too near to the agent's start",
             Self::Neighbour => "too near to another object",
             Self::Own => "too near to another object of the group",
-            Self::Group => "too near to an object of a group to keep out of",
+            Self::Group => "too near to an object of a group in keep_out.groups",
             Self::Doorway => "in the way of a doorway",
         }
     }
@@ -108,7 +108,7 @@ impl Condition {
             Self::Agent => "the agent's start",
             Self::Neighbour => "the nearest neighbour",
             Self::Own => "the nearest of its group",
-            Self::Group => "the nearest object to keep out of",
+            Self::Group => "the nearest object of these groups",
             Self::Doorway => "the nearest doorway",
         }
     }
@@ -258,7 +258,7 @@ impl<'a> PlacementContext<'a> {
                 Ok(found)
             }
             Err((tries, asked)) if tried.failed.iter().all(|count| *count == 0) => {
-                Err((tries, format!("{asked}; lower the count, or ask for less")))
+                Err((tries, format!("{asked}; lower the count, or relax the request")))
             }
             Err((tries, asked)) => Err((tries, format!("{asked}; {}", tried.failure().1))),
         }

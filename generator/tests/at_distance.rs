@@ -1,4 +1,4 @@
-//! Tests of the search for variants at a given distance if requirements cut off parts of the ranges: it finds every distance
+//! Tests of the search for variants at a given distance when requirements cut off parts of the ranges: it finds every distance
 //! that a grid search of the allowed region finds.
 
 use std::sync::Arc;

@@ -112,7 +112,7 @@ fn one_more_object_around_each_anchor_moves_no_other_object() {
 }
 
 #[test]
-fn a_group_around_a_group_that_is_not_there_is_refused_with_the_names_there_are() {
+fn group_around_an_unknown_group_is_refused_with_known_names() {
     let error = TaskSpec::from_json(
         "t.json",
         r#"{ "name": "t", "version": 2, "groups": [

@@ -185,7 +185,7 @@ fn variant_at_given_distance_changes_only_its_subject() {
 }
 
 #[test]
-fn a_distance_that_cannot_be_had_says_how_near_one_comes() {
+fn unreachable_distance_error_reports_the_nearest_one() {
     let a = variant("a");
     let far = at_distance(&a, &Subject::Element(Element::R), 0.9, 1e-3, distance(&a)).expect_err("pay is worth 0.2");
     let gap = at_distance(&a, &Subject::Parameters(vec!["color".into()]), 0.2, 1e-3, distance(&a))

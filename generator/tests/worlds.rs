@@ -169,7 +169,7 @@ fn objects_keep_out_of_excluded_regions() {
 }
 
 #[test]
-fn what_cannot_be_placed_says_which_group_and_what_to_loosen() {
+fn unplaceable_object_error_names_the_group_and_the_field_to_relax() {
     let crowd = load(
         r#"{ "name": "crowd", "world": { "environment_params": { "map_size": [10, 10] } },
              "groups": [{ "name": "crowd", "count": 100, "object": { "class": "cube" },
@@ -187,7 +187,7 @@ fn what_cannot_be_placed_says_which_group_and_what_to_loosen() {
 }
 
 #[test]
-fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
+fn out_of_range_draw_error_names_its_key() {
     let wild = load(
         r#"{ "name": "wild", "world": { "environment_params": { "light_intensity": { "normal": { "mean": 1, "std": 50 } } } } }"#,
     );
@@ -200,7 +200,7 @@ fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
 }
 
 #[test]
-fn draws_that_do_not_go_together_are_an_error_that_says_why() {
+fn incompatible_draws_are_an_error_with_the_reason() {
     let pictures = load(
         r#"{ "name": "fine", "world": { "agent_params": {
              "observation_size": { "integer_uniform": { "low": 84, "high": 4096 } },

@@ -20,7 +20,7 @@ const MAX_TOTAL: usize = 200_000;
 /// Minimum number of variants to measure for each set of parameters whose straight line is cut off.
 const MIN_SCANNED: usize = 500;
 
-/// Maximum number of variants to measure in each pass where distances add up, per number of changed parameters.
+/// Maximum number of variants to measure in each pass if distances add up, per number of changed parameters.
 const MAX_ON_LEVELS: usize = 40_000;
 
 /// Maximum number of points to compute per change set in the second pass.
@@ -29,7 +29,7 @@ const MAX_POINTS: usize = 400;
 /// Number of points to compute per change set in the first pass.
 const MIN_POINTS: usize = 24;
 
-/// Maximum number of variants to measure while looking for a better answer once there is one.
+/// Maximum number of variants to measure while looking for a better answer once one is found.
 const MAX_FOR_BETTER: usize = 6_000;
 
 /// Shares of ranges that differ by less than this count as equal.
@@ -139,7 +139,7 @@ fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     cut
 }
 
-/// Drops changes that are not needed to meet the target, starting with those that nothing reads.
+/// Drops changes that are not needed to meet the target, starting with parameters that nothing reads.
 fn without_idle_changes<D: FnMut(&Variant) -> f64>(search: &mut Search<D>, found: Found) -> Found {
     let mut names = changed(search.from, &found.variant);
     names.sort_by_key(|name| found.variant.reads(name));

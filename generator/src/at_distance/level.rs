@@ -1,6 +1,5 @@
-//! Moves several numbers at once, if the distance of one adds to the distance of the others: computes points with the required
-//! sum, and checks whether the task allows each. `scan.rs` takes over if no distance adds up, or the allowed region is too
-//! narrow to hit.
+//! Moves several numbers at once, if their distances add up: computes points with the required sum, and checks whether the
+//! task allows each. `scan.rs` takes over if no distance adds up, or the allowed region is too narrow to hit.
 
 use std::collections::HashMap;
 

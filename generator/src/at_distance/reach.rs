@@ -38,7 +38,7 @@ struct Candidate<'a> {
     choices: Vec<(Value, f64)>,
     ends: Vec<Value>,
     /// For a number that may decide which parameters are read: values from end to end, and how much farther it may reach
-    /// between them. If there would be too many values, none and infinity.
+    /// between them. If there would be too many values, the list is empty and the number infinite.
     between: (Vec<Value>, f64),
     min: f64,
     max: f64,
@@ -172,7 +172,7 @@ fn add_change_sets<'a, D: FnMut(&Variant) -> f64>(
     }
 }
 
-/// All combinations of choices with the sums of their distances, if `is_possible` accepts these.
+/// All combinations of choices with the sums of their distances, if `is_possible` accepts the sums.
 fn products(members: &[&Candidate], is_possible: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
     let mut all = vec![(Changes::new(), 0.0)];
     for member in members {

@@ -28,8 +28,8 @@ const MAX_STARTS: usize = 12;
 /// Number of times the small steps are halved.
 const STEP_HALVINGS: u32 = 30;
 
-/// A quarter of this is the number of points on either side of the target distance that are tried in pairs.
-const PAIRS: usize = 24;
+/// Maximum number of points on either side of the target distance that are paired with those on the other side.
+const MAX_PAIRED: usize = 6;
 
 /// Maximum number of axes for which diagonals are also tried.
 const MAX_DIAGONAL_AXES: usize = 8;
@@ -221,8 +221,8 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             side
         };
         let (near, far) = (side(false), side(true));
-        for a in near.iter().take(PAIRS / 4) {
-            for b in far.iter().take(PAIRS / 4) {
+        for a in near.iter().take(MAX_PAIRED) {
+            for b in far.iter().take(MAX_PAIRED) {
                 self.between((&a.0, a.1), (&b.0, b.1))?;
             }
         }

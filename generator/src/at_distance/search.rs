@@ -124,7 +124,7 @@ fn shown(from: &Variant, to: &Variant) -> String {
         .filter(|(name, value)| from.value(name) != Some(*value));
     let shown: Vec<String> = different.map(|(name, value)| format!("{name} = {value}")).collect();
     if shown.is_empty() {
-        "as it stands".to_owned()
+        "unchanged".to_owned()
     } else {
         shown.join(", ")
     }

@@ -82,7 +82,7 @@ impl Sampler {
                 count: doors.len() as u32,
                 tries: (free.len() * TRIES_IN_CELL) as u32,
                 reason: format!(
-                    "all {} cells that are reached before its door is opened are taken; lower the counts of groups, or make \
+                    "all {} cells that can be reached before its door is opened are taken; lower the counts of groups, or make \
                      the rooms larger",
                     free.len()
                 ),

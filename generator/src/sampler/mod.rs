@@ -151,8 +151,8 @@ impl Sampler {
         Ok(names.zip(self.empty_world(index)?.1).collect())
     }
 
-    /// The randomized parameters of the first attempt from `first` on that meets the requirements, and the number of that
-    /// attempt.
+    /// Draws the randomized parameters until they meet the requirements, starting with attempt `first`; also returns the number
+    /// of the successful attempt.
     fn draw_values(&self, index: u64, first: u32) -> Result<(Vec<Value>, u32), GeneratorError> {
         for attempt in first..MAX_ATTEMPTS {
             let mut values = vec![Value::Boolean(false); self.compiled.parameters.len()];
