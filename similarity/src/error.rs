@@ -9,7 +9,7 @@ use driftworld_text::one_line;
 pub enum SimilarityError {
     /// Variants of different tasks have no parameters to compare.
     #[error(
-        "found variants of the tasks {a:?} and {b:?}, expected two of one task, of one and the same document; compare sampled worlds instead"
+        "found variants of the tasks {a:?} and {b:?}, expected variants of one task from one document; compare sampled worlds instead"
     )]
     DifferentTasks {
         /// The first variant's task.
@@ -118,7 +118,7 @@ pub enum SimilarityError {
         expected: String,
     },
     /// The target step is missing or not a length.
-    #[error("method target-step: found {found} as the wanted step, expected a finite number of at least 0")]
+    #[error("method target-step: found {found} as the target step, expected a finite number of at least 0")]
     BadTargetStep {
         /// The text or value found.
         found: String,
@@ -138,7 +138,7 @@ pub enum SimilarityError {
         advice: String,
     },
     /// Lists to correlate have different lengths.
-    #[error("correlation: found lists of {a} and {b} numbers, expected as many in both")]
+    #[error("correlation: found lists of {a} and {b} numbers, expected equal lengths")]
     CorrelationLengths {
         /// Numbers in the first list.
         a: usize,
@@ -156,7 +156,7 @@ pub enum SimilarityError {
         needed: usize,
     },
     /// A number to correlate is not finite.
-    #[error("correlation: found {found} at place {place} of the {list} list, expected a finite number")]
+    #[error("correlation: found {found} at index {place} of the {list} list, expected a finite number")]
     CorrelationNotFinite {
         /// First or second.
         list: &'static str,
@@ -167,8 +167,8 @@ pub enum SimilarityError {
     },
     /// A list to correlate is constant.
     #[error(
-        "correlation: found {found} everywhere in the {list} list, expected numbers that differ: what never changes goes \
-         together with nothing"
+        "correlation: found {found} everywhere in the {list} list, expected numbers that differ: correlation is \
+         undefined for a constant list"
     )]
     CorrelationConstant {
         /// First or second.
@@ -271,7 +271,7 @@ pub enum SimilarityError {
         expected: String,
     },
     /// Two things to compare element by element have different sizes.
-    #[error("{of}: found {a} and {b} {what}, expected as many in both")]
+    #[error("{of}: found {a} and {b} {what}, expected equal numbers")]
     SizesDiffer {
         /// The things compared.
         of: &'static str,
@@ -459,7 +459,7 @@ mod tests {
                 a: "walk".into(),
                 b: "run".into(),
                 found: 2.0,
-                expected: "1 as on the way back".into(),
+                expected: "1, the cost in the other direction".into(),
             },
             SimilarityError::TwiceNamed { name: "walk".into() },
             SimilarityError::UnknownChoice {
@@ -488,11 +488,11 @@ mod tests {
                 most: 4096,
             },
         ];
-        let said: Vec<String> = errors
+        let messages: Vec<String> = errors
             .iter()
             .map(|error| format!("{}: {error}", error.code()))
             .collect();
-        insta::assert_snapshot!(said.join("\n"));
+        insta::assert_snapshot!(messages.join("\n"));
         let covered: BTreeSet<&str> = errors.iter().map(SimilarityError::code).collect();
         let all: BTreeSet<&str> = SimilarityError::VARIANTS.iter().copied().collect();
         assert_eq!(covered, all, "every code has a case here");

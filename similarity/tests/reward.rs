@@ -71,7 +71,7 @@ fn on_the_grid(samples: &RewardSamples<usize, usize>, name: &str, discount: f64)
     samples.measure(reward_of).expect("the rewards are valid")
 }
 
-/// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; moves against the edge stay.
+/// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; moves into the edge stay in place.
 fn walks() -> Vec<usize> {
     let mut weights = vec![0; 9 * 5 * 9];
     for state in 0..9_usize {

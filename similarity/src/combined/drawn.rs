@@ -25,8 +25,8 @@ pub(super) struct DrawnMeasure {
     /// numbers are then not normalised.
     widest: Option<f64>,
     can_differ: bool,
-    /// Whether points come from different families, or colours from both lists and densities; these can be compared by samples
-    /// only.
+    /// Whether points come from different families, or colours from both lists and densities; these can only be compared by
+    /// samples.
     is_mixed: bool,
     /// The measure of single colours, if distributions are compared by transporting colours.
     colors: Option<ColorMeasure>,
@@ -58,8 +58,8 @@ impl DrawnMeasure {
         this
     }
 
-    /// The largest distance among distributions: over all pairs, or, if there are many, from the one farthest from the first to
-    /// the one farthest from that, which is at least half of the largest if the triangle inequality holds. 0 if all are equal.
+    /// The largest distance between two distributions; 0 if all are equal. If there are many, compares only the one farthest
+    /// from the first with all others: the result is at least half of the largest if the triangle inequality holds.
     fn widest_of(&self, all: &[Distribution]) -> f64 {
         let raw = |a: &Distribution, b: &Distribution| self.raw(a, b).2;
         if all.len() <= ALL_PAIRS {

@@ -200,7 +200,7 @@ fn add_unnormalised(comparison: Comparison, number: f64, sink: &mut impl Sink) {
     sink.add(comparison, number, number);
 }
 
-/// Adds the difference of two numbers of at least 0, as a share of the larger one: a metric.
+/// Adds the difference of two numbers of at least 0, as a share of the larger value: a metric.
 fn relative(comparison: Comparison, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
     sink.add(comparison, raw, relative_difference(a, b));

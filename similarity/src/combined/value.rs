@@ -154,13 +154,13 @@ impl ValueMeasure {
 /// The aspect of two layouts that is compared. Layouts without a seed are drawn with seed 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LayoutMeasure {
-    /// Everything: shapes, the sides of their arenas, each by the difference over the larger, and 1 for different doors.
+    /// Everything: shapes, the sides of their arenas (difference as a share of the larger value), and 1 for different doors.
     Whole,
     /// Which cells have walls.
     Walls,
     /// Path lengths.
     Paths,
-    /// Distance by which walls have to be moved.
+    /// The distance by which walls must be moved.
     Transport,
 }
 
@@ -261,7 +261,7 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// From this number of choices on, pairs are compared on all cores.
+/// Minimum number of choices for which pairs are compared on all cores.
 const MIN_PARALLEL_CHOICES: usize = 500;
 
 /// The distance of the widest pair of choices, by `distance`. 1 if there are fewer than two.

@@ -15,12 +15,12 @@ use crate::distribution::Method;
 /// | element | parts, with the difference that counts as 1 |
 /// |---|---|
 /// | state | positions of objects (10 m), unmatched objects (each), their headings (180°), the agent's start (10 m), its heading (180°) |
-/// | action | action model, action space (a different word), top speeds (something against nothing) |
-/// | transition | motion and solidity of objects, time step, the agent's width, map and walls, sides of the arena |
-/// | reward | objects' pay (100 points), its triggers and odds (never against always), pay per second (1 point), rules, step limit |
-/// | observation | colours (black against white, in Oklab), looks of unmatched objects (each), models, sizes, light, camera |
+/// | action | action model, action space (a different value), maximum speed and turn rate (the larger value) |
+/// | transition | motion and solidity of objects, time step, the agent's width, map and walls, arena size |
+/// | reward | object rewards (100 points), conditions and probability (never to always), step reward (1 point/s), rules, episode limit |
+/// | observation | colours (black to white in Oklab), appearance of unmatched objects (each), models, sizes, light, camera |
 ///
-/// Numbers without a unit count by their difference over the larger one, so that something against nothing counts as 1; words
+/// Numbers without a unit count by their difference divided by the larger value, so that any number differs from 0 by 1; words
 /// count as 1 if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
 ///
 /// Objects are matched once within each class, at minimum total cost over all features; unmatched ones count in full: their

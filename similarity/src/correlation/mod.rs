@@ -104,7 +104,7 @@ mod tests {
         };
         assert_eq!(
             message(&[1.0, 2.0, 3.0], &[1.0, 2.0]),
-            "correlation: found lists of 3 and 2 numbers, expected as many in both"
+            "correlation: found lists of 3 and 2 numbers, expected equal lengths"
         );
         assert_eq!(
             message(&[1.0, 2.0], &[1.0, 2.0]),
@@ -112,12 +112,12 @@ mod tests {
         );
         assert_eq!(
             message(&[1.0, 2.0, 3.0], &[1.0, f64::NAN, 3.0]),
-            "correlation: found NaN at place 1 of the second list, expected a finite number"
+            "correlation: found NaN at index 1 of the second list, expected a finite number"
         );
         assert_eq!(
             message(&[2.0, 2.0, 2.0], &[1.0, 2.0, 3.0]),
-            "correlation: found 2 everywhere in the first list, expected numbers that differ: what never changes goes \
-             together with nothing"
+            "correlation: found 2 everywhere in the first list, expected numbers that differ: correlation is \
+             undefined for a constant list"
         );
         assert!("kendall".parse::<Correlation>().is_err());
         for &correlation in Correlation::ALL {

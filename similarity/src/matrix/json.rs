@@ -19,7 +19,7 @@ struct Document {
 impl DistanceMatrix {
     /// The matrix as JSON. Every number reads back exactly.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(self).expect("labels and finite numbers have a form in JSON")
+        serde_json::to_string(self).expect("labels and finite numbers are valid JSON")
     }
 
     /// Reads the output of [`DistanceMatrix::to_json`]; `nature` may be left out.

@@ -100,8 +100,8 @@ impl DistanceMatrix {
                 let back = Self::check_distance(&labels, b, a, values[[b, a]])?;
                 if (there - back).abs() > 1e-9 * there.max(back) {
                     let place = format!("distance of {:?} to {:?}", labels[a], labels[b]);
-                    let found = format!("{there} there and {back} back");
-                    return Err(bad(place, found, "one number for both".to_owned()));
+                    let found = format!("{there} in one direction and {back} in the other");
+                    return Err(bad(place, found, "equal distances".to_owned()));
                 }
             }
         }
@@ -240,7 +240,7 @@ mod tests {
         assert_eq!(result([0.0, 3.0, 3.0 + 1e-12, 0.0]).unwrap().get(1, 0), 3.0);
         assert_eq!(
             result([0.0, 3.0, 2.0, 0.0]).unwrap_err(),
-            "matrix, distance of \"item 0\" to \"item 1\": found 3 there and 2 back, expected one number for both"
+            "matrix, distance of \"item 0\" to \"item 1\": found 3 in one direction and 2 in the other, expected equal distances"
         );
         assert_eq!(
             result([0.0, 3.0, 3.0, 1.0]).unwrap_err(),

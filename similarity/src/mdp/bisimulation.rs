@@ -25,10 +25,10 @@ pub struct Bisimulation {
 /// The bisimulation metric between a state of one deterministic decision process and a state of another with the same actions.
 ///
 /// With one successor each, `d(s, t) = maxₐ (1 − c) |R(s, a) − R(t, a)| + c d(s', t')`, where action `a` leads from `s` to `s'`
-/// and from `t` to `t'`: the Wasserstein-1 distance between two certain successors is their distance. So `d(s, t)` depends only
-/// on the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of
-/// the rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions,
-/// each state is paired with itself, so there are as many pairs as states.
+/// and from `t` to `t'`: the Wasserstein-1 distance between two point masses is the distance between their points. So `d(s, t)`
+/// depends only on the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in
+/// the unit of the rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same
+/// transitions, each state is paired with itself, so there are as many pairs as states.
 ///
 /// `starts`: a state of the first and one of the second process. `discount`: `c`, 0 to 0.9999. `max_pairs`: how many
 /// pairs to visit, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not visited count as 0 in the lower bound and as
@@ -49,7 +49,7 @@ pub struct Bisimulation {
 /// # Example
 /// ```
 /// use driftworld_similarity::{Mdp, bisimulation};
-/// // A corridor of four cells, to be walked left or right; the reward is at the right end, or nowhere.
+/// // A corridor of four cells in which the actions go left and right; the reward is at the right end, or nowhere.
 /// let moves = vec![0, 1, 0, 2, 1, 3, 2, 3];
 /// let goal = Mdp::new(4, 2, moves.clone(), vec![0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0])?;
 /// let none = Mdp::new(4, 2, moves, vec![0.0; 8])?;

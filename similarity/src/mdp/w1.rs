@@ -8,14 +8,14 @@ const ROUNDING: f64 = 1e-12;
 /// W₁-MDP of two deterministic processes, state by state: the mean distance between the outcomes of the same action in both.
 /// Returns the share due to rewards and the share due to successors; their sum is the distance.
 ///
-/// The Wasserstein-1 distance between two certain outcomes is the cost between them, here `|r − u| / unit + ground`, with `r` and
-/// `u` the rewards of the same action in the same state of both. The mean is over all actions of the counted states; outcomes
-/// are compared state by state, so swapping the effects of two actions is noticed.
+/// The Wasserstein-1 distance between two deterministic outcomes is the cost between them, here `|r − u| / unit + ground`, with `r`
+/// and `u` the rewards of the same action in the same state of both. The mean is over all actions of the counted states;
+/// outcomes are compared state by state, so swapping the effects of two actions is noticed.
 ///
-/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the reward that is
-/// one unit. `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
-/// action, by their index in `rewards`. With a metric between successors it is a metric on the processes' counted states; a
-/// shift of both rewards does not change it.
+/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the difference in
+/// reward that counts as 1. `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the
+/// successors of a state and an action, by their index in `rewards`. With a metric between successors it is a metric on the
+/// processes' counted states; a shift of both rewards does not change it.
 ///
 /// Source: the Wasserstein-1 distance between the successors and rewards of transitions is the W₁-MDP distance of Birkbeck,
 /// Sobey, Cerutti, Flynn and Norman 2024, "CHIRPs: change-induced regret proxy metrics for lifelong reinforcement

@@ -65,7 +65,7 @@ impl GridShape {
         self.cell
     }
 
-    /// Cells of all planes.
+    /// Number of cells in all planes.
     pub fn num_cells(&self) -> usize {
         self.columns * self.rows * self.planes
     }

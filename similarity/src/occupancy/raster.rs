@@ -7,11 +7,11 @@ use driftworld_spec::World;
 use super::grid::{DEFAULT_CELL, Grid, GridShape};
 use crate::SimilarityError;
 
-/// A common raster for worlds: the smallest area around the origin that holds all their arenas, divided into square cells from
-/// its south-western corner on, with a plane for each class.
+/// A common raster for worlds: the smallest area around the origin that holds all their arenas, divided into square cells
+/// starting at its south-western corner, with a plane for each class.
 ///
-/// An object on the line between two cells belongs to the northern or eastern one, on the outer edge to the last cell; objects
-/// outside are not counted. Grids of the same raster can be compared.
+/// An object on the line between two cells belongs to the northern or eastern one, an object on the outer edge to the last cell;
+/// objects outside are not counted. Grids of the same raster can be compared.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Raster {
     shape: GridShape,

@@ -41,7 +41,7 @@ impl Method {
     /// Every method.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// [`Method::Exact`] if possible, [`Method::TwoOpt`] beyond.
+    /// [`Method::Exact`] for up to 15 items, otherwise [`Method::TwoOpt`].
     pub fn default_for(items: usize) -> Self {
         if items <= MAX_EXACT { Self::Exact } else { Self::TwoOpt }
     }

@@ -221,7 +221,7 @@ fn impossible_orders_are_refused_with_a_reason() {
     );
     assert_eq!(
         message(&many, Method::TargetStep, &free),
-        "method target-step: found none as the wanted step, expected a finite number of at least 0"
+        "method target-step: found none as the target step, expected a finite number of at least 0"
     );
 }
 

@@ -129,7 +129,7 @@ impl Tour {
 mod tests {
     use super::*;
 
-    /// The round from item 0 on, in the direction of its lower neighbour.
+    /// The round starting at item 0, in the direction of its lower neighbour.
     fn round(tour: &Tour) -> Vec<usize> {
         let mut items = vec![0];
         let forwards = tour.next(0) < tour.before(0);

@@ -43,7 +43,7 @@ impl PictureMeasure {
     }
 }
 
-/// Mean distance of pictures in pairs: the first of each, the second of each, and so on, from the same poses.
+/// Mean distance between pictures from the same poses: the first of each set, the second of each set, and so on.
 ///
 /// In `0..=1`, with the metric properties of the measure. Both sets must have the same number of pictures, with equal sizes in
 /// each pair. Takes as long as all its pairs together.

@@ -20,9 +20,9 @@ const DRAWS: usize = 96;
 ///
 /// A state is the agent's position and the set of used-up objects; an action triggers one object, or none. For an action, a
 /// world pays the object's reward (times its probability), or `order_penalty` if out of turn, plus its shaping. Both worlds'
-/// rewards are evaluated on the same 256 transitions, each of which may lead anywhere; objects are indices as in distances of
-/// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a constant, a
-/// factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
+/// rewards are evaluated on the same 256 transitions, each of which may lead anywhere; objects are matched as in
+/// [`world_distance`](crate::world_distance), and an object that only one world has pays nothing in the other. So 0 means the
+/// same reward up to a constant, a factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
 ///
 /// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is the larger
 /// of the discounts of the worlds' shaping, by default 0.99. A pseudometric among worlds whose objects match in the same way.

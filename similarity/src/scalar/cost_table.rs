@@ -94,9 +94,9 @@ fn check(names: &[String], costs: &[f64]) -> Result<(), SimilarityError> {
         let expected = if !found.is_finite() || found < 0.0 {
             "a finite number of at least 0".to_owned()
         } else if row == column && found != 0.0 {
-            "0, for nothing is apart from itself".to_owned()
+            "0, the cost of a choice to itself".to_owned()
         } else if back.is_finite() && found != back {
-            format!("{back} as on the way back")
+            format!("{back}, the cost in the other direction")
         } else {
             continue;
         };

@@ -1,4 +1,4 @@
-//! Difference between two numbers as a share of the larger one.
+//! Difference between two numbers as a share of the larger magnitude.
 
 /// Difference between two numbers as a share of the larger magnitude: |a − b| / max(|a|, |b|); 0 for two zeros.
 ///

@@ -100,7 +100,7 @@ mod tests {
         }
 
         #[test]
-        fn shifted_set_is_as_far_as_its_shift(a in points(), x in -5.0f64..5.0, y in -5.0f64..5.0) {
+        fn shifted_set_is_the_length_of_the_shift_away(a in points(), x in -5.0f64..5.0, y in -5.0f64..5.0) {
             let b: Vec<[f64; 2]> = a.iter().map(|p| [p[0] + x, p[1] + y]).collect();
             prop_assert!((earth_movers_distance(&a, &b).unwrap() - libm::hypot(x, y)).abs() < 1e-12);
         }

@@ -40,7 +40,7 @@ impl Placements {
     ///
     /// Classes are added up. The number of objects in a class does not matter: sets with different numbers of objects in the
     /// same positions are 0 apart. A metric between sets of positions of the same classes; if the classes differ, the triangle
-    /// inequality may fail. All else in the worlds is ignored. `weights`: supplies the weight of the state.
+    /// inequality may fail. Everything else in the worlds is ignored. `weights`: supplies the weight of the state.
     ///
     /// # Errors
     /// [`SimilarityError::Empty`] if one has no world, [`SimilarityError::TooMany`] above
@@ -76,9 +76,9 @@ impl Placements {
                 method: Some(Method::Samples { count }),
                 raw,
                 ..Part::of(
-                    &format!("places of {class}"),
+                    &format!("{class} positions"),
                     Element::S,
-                    "earth mover's way / 10 m",
+                    "earth mover's distance / 10 m",
                     counts,
                 )
             });
