@@ -38,7 +38,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
             );
         }
         ended(&example, done.map(|done| done.status))?;
-        println!("  {name} ended well in {:.1} s", start.elapsed().as_secs_f64());
+        println!("  {name} succeeded in {:.1} s", start.elapsed().as_secs_f64());
     }
     Ok(Outcome::Passed(format!("{} examples run", names.len())))
 }

@@ -24,22 +24,22 @@ const RESERVED_CALLS: [(&str, &str, &str); 4] = [
     (
         "fs::read(",
         "files",
-        "driftworld_files::read, for a pipe may have no end",
+        "driftworld_files::read, because a pipe may never end",
     ),
     (
         "fs::read_to_string(",
         "files",
-        "driftworld_files::text, for a pipe may have no end",
+        "driftworld_files::text, because a pipe may never end",
     ),
     (
         "File::open(",
         "files",
-        "driftworld_files::open, for a pipe may have no end",
+        "driftworld_files::open, because a pipe may never end",
     ),
     (
         ".display()",
         "text",
-        "driftworld_text::ShownPath, for a name may hold escape sequences",
+        "driftworld_text::ShownPath, because a name may contain escape sequences",
     ),
 ];
 
@@ -69,7 +69,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     findings.extend(check(&sources));
     findings.extend(unreached::find(&sources).into_iter().map(|item| {
         let (path, line, name) = (item.path, item.line, item.name);
-        format!("{path}:{line}: found `{name}` public and named by no code but tests; remove it, or see xtask/src/unreached.rs")
+        format!("{path}:{line}: found public `{name}`, used only in tests if at all; remove it, or see xtask/src/unreached.rs")
     }));
     for finding in &findings {
         eprintln!("{finding}");
@@ -86,7 +86,7 @@ fn check(sources: &Sources) -> Vec<String> {
     for (path, text) in sources.with_extensions(&["rs"]) {
         if !text.starts_with("//! ") {
             findings.push(format!(
-                "{path}:1: found no `//! `, expected a file to open with its purpose"
+                "{path}:1: found no `//! `, expected a first line that states the file's purpose"
             ));
         }
         if !is_test_file(path) && !TOOL_FOLDERS.iter().any(|folder| path.starts_with(folder)) {

@@ -30,14 +30,14 @@ use stages::STAGES;
 
 const USAGE: &str = "\
 Usage:
-  cargo xtask test                  what a change has to pass: the quick stages, in order, up to the first that fails
+  cargo xtask test                  what every change must pass: the quick stages in order, up to the first failure
   cargo xtask test --all            all stages, with all features and tests at full size: CI runs this
-  cargo xtask test --only STAGE     one stage (may be given several times, and with --all)
+  cargo xtask test --only STAGE     one stage (may be repeated, and combined with --all)
   cargo xtask test --list           the stages and what each checks
   cargo xtask STAGE                 the same as `test --only STAGE`, except for the three below
-  cargo xtask schemas               write schemas/*.json and docs/reference/*.md anew from the Rust types
-  cargo xtask size                  write the counts of lines of code in SIZE.md anew
-  cargo xtask studio                build the page of the workbench into target/studio (needs Node.js and a target of rustup)
+  cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
+  cargo xtask size                  update the line counts in SIZE.md
+  cargo xtask studio                build the workbench page into target/studio (needs Node.js and a rustup target)
 
 CONTRIBUTING.md has the commands for benches, fuzzing, sanitizers, pictures and releases.";
 

@@ -103,7 +103,7 @@ pub(crate) fn about(path: &Path) -> impl Fn(std::io::Error) -> String {
 pub(crate) fn metadata() -> Result<Value> {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
-    serde_json::from_str(&output(cargo)?).map_err(|error| format!("`cargo metadata` was not understood: {error}"))
+    serde_json::from_str(&output(cargo)?).map_err(|error| format!("`cargo metadata` could not be parsed: {error}"))
 }
 
 #[cfg(test)]

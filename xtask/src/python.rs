@@ -10,7 +10,7 @@ use crate::process::{Result, Workspace, about, output, run, works};
 use crate::stage::{Outcome, missing};
 
 pub(crate) const NO_INTERPRETER: &str =
-    "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
+    "found no Python 3.10 or later with venv and pip (Debian: apt install python3-venv; or set DRIFTWORLD_PYTHON)";
 
 /// Any Python version that the package supports.
 pub(crate) const ANY_VERSION: &str = "(3, 10) <= sys.version_info";
@@ -189,7 +189,7 @@ pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment>
         && free < LEARNERS_GIB
     {
         return Err(format!(
-            "{free} GiB are free for torch and Ray, expected {LEARNERS_GIB}"
+            "found {free} GiB of free disk space for torch and Ray, expected {LEARNERS_GIB}"
         ));
     }
     let list = ["python/tests/requirements-learners.txt"];

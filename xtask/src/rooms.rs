@@ -68,13 +68,13 @@ pub(crate) fn check(metadata: &Value) -> Vec<String> {
             .iter()
             .filter(|to| ours.contains(to) && allowed.split(' ').all(|room| room != *to));
         findings.extend(forbidden.map(|to| {
-            format!("{from}/Cargo.toml: found an import of `{to}`, expected at most: {allowed}; move what both need down, or pass it in")
+            format!("{from}/Cargo.toml: found an import of `{to}`, expected only {allowed}; move shared code to these, or pass it in")
         }));
     }
     findings
 }
 
-/// Dependencies of a manifest that have their own version or path. Only `features/` may have such ones: it names third-party
+/// Dependencies of a manifest that have their own version or path. Only `features/` may have these: it names third-party
 /// crates that none of our crates imports.
 pub(crate) fn versions(path: &str, manifest: &str) -> Vec<String> {
     let mut is_dependency = false;

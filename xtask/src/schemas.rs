@@ -7,7 +7,7 @@ use crate::stage::Outcome;
 /// Fails if a file in `schemas/` or `docs/reference/` is out of date or missing.
 pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     driftworld_schema(workspace, "--check")
-        .map_err(|error| format!("{error}; to write the files anew: cargo xtask schemas"))?;
+        .map_err(|error| format!("{error}; to rewrite the files: cargo xtask schemas"))?;
     Ok(Outcome::Passed(String::new()))
 }
 

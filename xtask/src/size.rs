@@ -12,11 +12,11 @@ const OPENING: &str = "\
 # Size
 
 Lines of code in each room: Rust, except where the name says another language. A line of code is neither blank nor a comment. Tests
-are counted apart: the folders `tests/`, `test/`, `benches/`, `examples/` and `fuzz/`, files named `tests.rs`, and modules under
+are counted separately: the folders `tests/`, `test/`, `benches/`, `examples/` and `fuzz/`, files named `tests.rs`, and modules under
 `#[cfg(test)]`.
 
 `cargo xtask test` fails if a room is over its limit: raise the limit in the same commit and say why in the last column.
-It also fails if a count is more than 2% out of date: `cargo xtask size` writes the counts anew.
+It also fails if a count is more than 2% out of date: `cargo xtask size` updates the counts.
 
 | room | lines | limit | why the limit was raised |
 |---|--:|--:|---|
@@ -152,7 +152,7 @@ fn table(counts: &[(&str, usize)], old_rows: &[Row]) -> String {
     text
 }
 
-/// Problems of the written rows. Counts that differ by at most 20 lines never count as out of date.
+/// Problems in the rows of the file. Counts that differ by at most 20 lines never count as out of date.
 fn complaints(counts: &[(&str, usize)], old_rows: &[Row], are_counts_compared: bool) -> Vec<String> {
     let mut complaints = Vec::new();
     for &(room, lines) in counts {

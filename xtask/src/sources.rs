@@ -1,4 +1,4 @@
-//! Reads the files of the checkout that git lists, and tells code from blank lines, comments and tests.
+//! Reads the files of the checkout that git lists, and separates code from blank lines, comments and tests.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -30,7 +30,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     quick("clippy", "no compiler or clippy warning in any target", clippy),
     quick(
         "fences",
-        "crates import only what they may, documents name what exists, nothing public is unreached",
+        "crates import only allowed crates, pages name existing files, every public item is used",
         fences::stage,
     ),
     quick(
@@ -46,7 +46,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     quick("doctests", "every example in a doc comment runs", doctests),
     quick(
         "docs",
-        "every link of every page leads somewhere; with --all, the crates' documentation builds without a warning",
+        "no page has a broken link; with --all, the crates' documentation builds without a warning",
         docs,
     ),
     quick(
@@ -72,7 +72,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     ),
     slow(
         "python",
-        "the Python package is linted and typed, and passes its tests on the newest and the oldest Gymnasium",
+        "the Python package passes linting, type checks, and its tests with the newest and the oldest Gymnasium",
         python::package,
     ),
     slow(
@@ -87,7 +87,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     ),
     slow(
         "studio",
-        "the page of the workbench is built and typed, and its simulator gives this machine's answers, in a browser too",
+        "the workbench page builds and type-checks, and its simulator gives the native one's answers, in a browser too",
         studio::stage,
     ),
     slow(
@@ -139,7 +139,7 @@ fn docs(workspace: &Workspace) -> Result<Outcome> {
     }
     let Some(python) = python::interpreter(python::ANY_VERSION) else {
         return Ok(Outcome::Partly(
-            "no link was checked, for want of Python 3.10 or later".into(),
+            "no link was checked: found no Python 3.10 or later".into(),
         ));
     };
     run(workspace.program(&python, &["book/record.py", "--check"]))?;
@@ -249,7 +249,7 @@ fn verdict(count: usize, in_part: &[&str]) -> String {
     if in_part.is_empty() {
         passed
     } else {
-        format!("{passed}, in part only: {}", in_part.join(", "))
+        format!("{passed}, but only in part: {}", in_part.join(", "))
     }
 }
 
@@ -262,7 +262,7 @@ mod tests {
     fn partial_pass_is_not_called_passed() {
         assert_eq!(verdict(1, &[]), "the stage passed");
         assert_eq!(verdict(3, &[]), "all 3 stages passed");
-        assert_eq!(verdict(3, &["deny"]), "all 3 stages passed, in part only: deny");
+        assert_eq!(verdict(3, &["deny"]), "all 3 stages passed, but only in part: deny");
     }
 
     #[cfg(unix)]

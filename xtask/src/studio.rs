@@ -1,4 +1,4 @@
-//! `cargo xtask studio` builds the page of the workbench into `target/studio`, and the stage `studio` tests it.
+//! `cargo xtask studio` builds the workbench page into `target/studio`, and the stage `studio` tests it.
 //! `studio/build.mjs` bundles the page.
 
 use std::env;
@@ -118,7 +118,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     match python::with_package(workspace) {
         Ok(interpreter) => tests.env("DRIFTWORLD_PYTHON", interpreter),
         Err(reason) => {
-            println!("the page's programs in Python are not run: {reason}");
+            println!("the page's Python programs are not run: {reason}");
             missing("PYTHON", reason)?;
             tests.env_remove("DRIFTWORLD_PYTHON")
         }
@@ -147,8 +147,8 @@ fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
 pub(crate) fn print_location(workspace: &Workspace) {
     let folder = workspace.target.join("studio");
     let shown = folder.display();
-    println!("the page is {shown}; `driftworld studio` of this build folder serves it");
+    println!("the page is in {shown}; `driftworld studio`, built in the same target folder, serves it");
     if env::var_os("DRIFTWORLD_STUDIO").is_none() {
-        println!("to put it into a program: DRIFTWORLD_STUDIO='{shown}' cargo build --release");
+        println!("to embed it in a program: DRIFTWORLD_STUDIO='{shown}' cargo build --release");
     }
 }

@@ -13,7 +13,7 @@ const EXCEPTIONS: [(&str, &str); 4] = [
     ("ShownPath", "a trait whose method `shown` is called"),
     (
         "each_instruction_set",
-        "tests compare the pictures of all sets of instructions",
+        "tests compare the pictures of all instruction sets",
     ),
     ("with_renderer", "tests compare the pictures of both renderers"),
 ];
