@@ -1,5 +1,5 @@
 //! Compare two distributions of a parameter with every measure in the library: some see a shift, others only the overlap.
-#![expect(clippy::print_stdout, reason = "an example shows what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use driftworld::similarity::distribution::{
     Measured, energy, hellinger, jensen_shannon, kullback_leibler, total_variation, wasserstein_1, wasserstein_2,
@@ -21,7 +21,7 @@ fn main() {
         ("total variation", total_variation),
         ("Kullback-Leibler", kullback_leibler),
     ];
-    println!("{:<18}{:>10}{:>10}", "a normal moved by", 4, 40);
+    println!("{:<18}{:>10}{:>10}", "normal shifted by", 4, 40);
     for (name, measure) in measures {
         let value = |other| measure(&here, other).map_or(f64::NAN, |found| found.value);
         println!("{name:<18}{:>10.4}{:>10.4}", value(&near), value(&far));

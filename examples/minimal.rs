@@ -1,5 +1,5 @@
 //! Sample a world, walk a few steps in it, and save what the agent sees.
-#![expect(clippy::print_stdout, reason = "an example shows what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use driftworld::env::{Action, Environment};
 use driftworld::{generator, tasks};

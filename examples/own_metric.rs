@@ -1,19 +1,19 @@
 //! Score a lifetime with a custom metric alongside the built-in ones: the largest loss in any task.
-#![expect(clippy::print_stdout, reason = "an example shows what it does")]
+#![expect(clippy::print_stdout, reason = "an example prints its results")]
 
 use driftworld::metrics::{
     Assessment, BlockType, Direction, Headline, LogWriter, LoggerInfo, Metric, MetricsError, Options, Record,
     ScenarioInfo, Scorer, Timestamp, read_log,
 };
 
-/// The largest drop of an evaluation of a task below the best earlier one.
+/// The largest drop of a task's performance below its best earlier evaluation.
 struct WorstForgetting;
 
 impl Metric for WorstForgetting {
     fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             "worst_forgetting",
-            "how much was lost at worst? points below the best evaluation before",
+            "how much was lost at worst? points below the best earlier evaluation",
             Direction::Lower,
         )]
     }
@@ -29,15 +29,15 @@ impl Metric for WorstForgetting {
                 best = best.max(performance);
                 worst = Some(f64::max(worst.unwrap_or(0.0), best - performance));
             }
-            // A task without evaluations gets no value; the lifetime's is the mean over tasks.
+            // A task without evaluations gets no value; the value of the lifetime is the mean over its tasks.
             assessment.set_task(task, "worst_forgetting", worst);
         }
         Ok(())
     }
 }
 
-/// A learner of two tasks that forgets the first while it learns the second.
-fn live(log: &mut LogWriter) -> Result<(), MetricsError> {
+/// Writes the log of a learner that forgets its first task while it learns the second.
+fn write_log(log: &mut LogWriter) -> Result<(), MetricsError> {
     let (mut skill, mut exp_num) = ([0.0, 0.0], 0);
     for block in 0..5 {
         let experiences = if block % 2 == 0 { 10 } else { 40 };
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let logs = folder.path().join("forgetful");
     let mut log = LogWriter::create(&logs, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
-    live(&mut log)?;
+    write_log(&mut log)?;
     log.finish()?;
 
     let scorer = Scorer::new().with(WorstForgetting)?;

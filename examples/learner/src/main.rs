@@ -28,7 +28,7 @@ const FRAME_SKIP: u32 = 5;
 const SIDE: usize = 32;
 const IMAGE: usize = SIDE * SIDE * 3;
 const NUM_ENVS: usize = 64;
-/// Seed of the evaluation worlds; the worlds learned from use the run's own seed.
+/// Seed of the evaluation worlds; the training worlds use the run's own seed.
 const TEST_SEED: u64 = 1_000_000;
 
 /// Steps of each environment between updates.
@@ -71,7 +71,7 @@ fn environments(variant: &Variant, seed: u64) -> Result<Batch> {
     Ok(Batch::new(NUM_ENVS, source, options)?)
 }
 
-/// A layer: weights `(inputs, outputs)` and biases, with the moments of Adam.
+/// A layer: weights `(inputs, outputs)` and biases, with Adam's moments.
 struct Layer {
     name: &'static str,
     parameters: [Var; 2],
@@ -352,7 +352,7 @@ fn evaluate(network: &Network, variant: &Variant) -> Result<f64> {
     Ok(mean(&returns))
 }
 
-/// The planner's mean reward in the same worlds. It knows the map, moves and turns at any rate, and holds each action for as long.
+/// The planner's mean reward in the same worlds. It knows the map, moves and turns at any rate, and holds actions equally long.
 fn ceiling(variant: &Variant) -> Result<f64> {
     let episode = |index| -> Result<f64> {
         let mut environment = Environment::new(world(variant, TEST_SEED, index, ActionSpace::Continuous)?);
