@@ -87,7 +87,7 @@ fn document_of_the_wrong_kind_is_named() {
             let line = error.lines().next().unwrap_or_default();
             assert!(
                 line.contains(document) && line.contains(&format!(": found {name}, expected a"))
-                    || line.contains(&format!(": found {name}, expected settings")),
+                    || line.contains(&format!(": found {name}, expected scoring settings")),
                 "{arguments:?}: {error}"
             );
             assert!(line.contains("`driftworld "), "{arguments:?} says what to do: {error}");
