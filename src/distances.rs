@@ -14,7 +14,6 @@ use driftworld_text::counted;
 use strum::VariantNames as _;
 
 use crate::behavior::MAX_BEHAVIOR_WORLDS;
-use crate::picture_distance::PictureDistanceError;
 pub use matrix::{labelled_matrix, variant_matrix, variant_matrix_while};
 use pairs::{Means, Pairs};
 
@@ -41,9 +40,15 @@ pub enum DistancesError {
     /// A world cannot be run.
     #[error(transparent)]
     Env(#[from] EnvError),
-    /// Worlds cannot be compared by their looks.
-    #[error(transparent)]
-    Pictures(#[from] PictureDistanceError),
+    /// No position from which to compare pictures is free in every world.
+    #[error(
+        "pictures: found none of {tried} places free in all worlds, expected at least 1; if the worlds' walls are in different \
+         places, as in mazes of different sizes, compare by worlds or by parameters"
+    )]
+    NoPlace {
+        /// Number of positions tried.
+        tried: u32,
+    },
     /// The indices of the worlds to compare exceed the largest possible one.
     #[error("worlds: found index {index} and {worlds} worlds, expected a sum below 2^64; start at a smaller index")]
     TooFar {
@@ -215,8 +220,8 @@ pub struct Compared {
 ///
 /// # Errors
 /// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] from `reweigh`,
-/// [`DistancesError::TooFar`], [`DistancesError::By`] for parameters of different tasks, [`DistancesError::Env`] and
-/// [`DistancesError::Pictures`] for worlds that cannot be run or rendered.
+/// [`DistancesError::TooFar`], [`DistancesError::By`] for parameters of different tasks, [`DistancesError::Env`] for
+/// worlds that cannot be run or rendered, [`DistancesError::NoPlace`] for worlds without a common position by pictures.
 ///
 /// # Example
 /// ```

@@ -27,7 +27,7 @@ pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
 // The workbench in a browser (`studio/wasm/`) needs the modules without `cfg`: it has no files, terminal or figures.
-pub mod behavior;
+mod behavior;
 #[cfg(not(target_family = "wasm"))]
 mod checksum;
 #[cfg(not(target_family = "wasm"))]
@@ -77,7 +77,7 @@ pub mod ordering;
 mod output_file;
 #[cfg(not(target_family = "wasm"))]
 mod overwrite;
-pub mod picture_distance;
+mod picture_distance;
 #[cfg(not(target_family = "wasm"))]
 pub mod recordings;
 #[cfg(not(target_family = "wasm"))]

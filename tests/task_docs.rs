@@ -3,7 +3,6 @@
 
 use std::fmt::Write;
 
-use driftworld::behavior::behavior;
 use driftworld::elements::Optimum;
 use driftworld::env::{Agent, Catalogue, Environment, OnRailsAgent, StillAgent};
 use driftworld::generator::Sampler;
@@ -59,8 +58,8 @@ fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
     if !elements.contains(&Element::R) {
         return String::new();
     }
-    let found = behavior(first, variant, WORLDS, 0, &Catalogue::default()).unwrap_or_else(|error| panic!("{error}"));
-    let optimum = Optimum::of(&found);
+    let optimum = Optimum::measure(first, variant, 0, WORLDS, &Catalogue::default());
+    let optimum = optimum.unwrap_or_else(|error| panic!("{error}"));
     if optimum.turned {
         format!("yes, {:.0} points", optimum.regret)
     } else {

@@ -8,9 +8,9 @@ use driftworld_spec::{By, Element, World};
 use rayon::prelude::*;
 
 use super::DistancesError;
-use crate::behavior::{ExpertPair, POINTS};
+use crate::behavior::{POINTS, regrets};
 use crate::dynamics;
-use crate::picture_distance::{GRID_SIDE, PictureDistanceError, Pose, Views, poses};
+use crate::picture_distance::{GRID_SIDE, Pose, Views, poses};
 
 /// The numbers of one comparison: one per entry of [`parts`]; for whole decision processes, those used by [`Means`].
 pub(super) type Values = Vec<f64>;
@@ -70,7 +70,7 @@ impl<'a> Pairs<'a> {
                 let views = |world: &World| {
                     let poses = poses(&[world], &catalogue)?;
                     let views = Views::new(world, &poses, &catalogue)?;
-                    Ok::<_, PictureDistanceError>((poses, views))
+                    Ok::<_, DistancesError>((poses, views))
                 };
                 let views = worlds.par_iter().map(views).collect::<Result<_, _>>()?;
                 Prepared::Pictures(catalogue, views)
@@ -117,7 +117,7 @@ impl<'a> Pairs<'a> {
                 let (a, b) = (common_a.as_ref().unwrap_or(a), common_b.as_ref().unwrap_or(b));
                 if a.is_empty() {
                     let tried = GRID_SIDE * GRID_SIDE;
-                    return Err(PictureDistanceError::NoPlace { tried }.into());
+                    return Err(DistancesError::NoPlace { tried });
                 }
                 self.looks(a, b)?
             }
@@ -129,24 +129,13 @@ impl<'a> Pairs<'a> {
                 let [a, b] = worlds.map(|world| dynamics::tables(world, area, catalogue));
                 return self.outcomes(&a?, &b?);
             }
-            Prepared::Behavior(expertise, own) => {
-                let pair = ExpertPair {
-                    a_in_a: own[a],
-                    b_in_a: expertise.abroad(worlds[1], worlds[0])?,
-                    b_in_b: own[b],
-                    a_in_b: expertise.abroad(worlds[0], worlds[1])?,
-                };
-                vec![pair.regret_in_a(), pair.regret_in_b(), pair.success_difference()]
-            }
+            Prepared::Behavior(expertise, own) => regrets(expertise, worlds, [own[a], own[b]])?.to_vec(),
         })
     }
 
     fn looks(&self, a: &Views, b: &Views) -> Result<Values, DistancesError> {
         Ok(match self.by {
-            By::Pictures => {
-                let parts = a.parts(b)?;
-                vec![parts.objects, parts.surroundings]
-            }
+            By::Pictures => a.parts(b)?.to_vec(),
             By::PicturesStructure => vec![a.distance(b, PictureMeasure::Structure)?],
             _ => vec![a.distance(b, PictureMeasure::Oklab)?],
         })

@@ -1,11 +1,13 @@
 //! [`Optimum`]: whether a variant calls for different behaviour from the base variant.
 
-use driftworld_env::Catalogue;
+use driftworld_env::{Catalogue, Expertise};
+use driftworld_generator::Sampler;
 use driftworld_spec::Variant;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::Failure;
-use crate::behavior::{BehaviorOutcome, ExpertPair, behavior};
+use crate::behavior::{MAX_BEHAVIOR_WORLDS, regrets};
+use crate::failure::{Failure, within};
 
 /// Maximum number of pairs of worlds in which experts are exchanged.
 const MAX_WORLDS: u64 = 16;
@@ -28,65 +30,58 @@ pub struct Optimum {
 }
 
 impl Optimum {
-    /// Exchanges the experts of two variants in pairs of worlds, at most 16.
+    /// Exchanges the experts of two variants in pairs of worlds, at most 16, drawn under one seed and paired by index.
     ///
     /// # Errors
-    /// [`Failure`] if a world cannot be drawn.
-    pub(crate) fn measure(
+    /// [`Failure`] if a world cannot be drawn, or `worlds` is 0.
+    pub fn measure(
         base: &Variant,
         other: &Variant,
         seed: u64,
         worlds: u64,
         catalogue: &Catalogue,
     ) -> Result<Self, Failure> {
-        Ok(Self::of(&behavior(
-            base,
-            other,
-            worlds.min(MAX_WORLDS),
-            seed,
+        let worlds = worlds.min(MAX_WORLDS);
+        within("worlds", worlds, 1..=MAX_BEHAVIOR_WORLDS)?;
+        let catalogue = catalogue.clone();
+        let expertise = Expertise {
             catalogue,
-        )?))
+            ..Expertise::default()
+        };
+        let samplers = [base, other].map(|variant| Sampler::new(variant, seed));
+        let exchange = |index| {
+            let [a, b] = [samplers[0].world(index)?, samplers[1].world(index)?];
+            let own = [expertise.at_home(&a)?, expertise.at_home(&b)?];
+            Ok::<_, Failure>(regrets(&expertise, [&a, &b], own)?)
+        };
+        let pairs = (0..worlds).into_par_iter().map(exchange);
+        Ok(Self::of(&pairs.collect::<Result<Vec<_>, _>>()?))
     }
 
-    /// Summarises an exchange of experts, with its first variant as the base.
-    pub fn of(found: &BehaviorOutcome) -> Self {
-        let count = found.pairs.len().max(1) as f64;
-        let deviation = |pair: &ExpertPair| (pair.regret_in_b() - found.regret_in_b).powi(2);
-        let variance = found.pairs.iter().map(deviation).sum::<f64>() / (count - 1.0).max(1.0);
+    /// Summarises the regrets in pairs of worlds, the base's first.
+    fn of(pairs: &[[f64; 3]]) -> Self {
+        let count = pairs.len() as f64;
+        let [regret_in_base, regret] = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).sum::<f64>() / count);
+        let deviations = pairs.iter().map(|pair| (pair[1] - regret).powi(2));
+        let variance = deviations.sum::<f64>() / (count - 1.0).max(1.0);
         let error = (variance / count).sqrt();
         Self {
-            turned: found.regret_in_b >= MIN_REGRET && found.regret_in_b > 2.0 * error,
-            regret: found.regret_in_b,
-            regret_in_base: found.regret_in_a,
-            worlds: found.pairs.len() as u64,
+            turned: regret >= MIN_REGRET && regret > 2.0 * error,
+            regret,
+            regret_in_base,
+            worlds: pairs.len() as u64,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use driftworld_env::ExpertRun;
-
     use super::*;
 
     /// The optimum if the first variant's expert earns less by these amounts in worlds of the second.
     fn optimum_of(regrets: &[f64]) -> Optimum {
-        let pair = |regret: &f64| ExpertPair {
-            b_in_b: ExpertRun {
-                earned: *regret,
-                ..ExpertRun::default()
-            },
-            ..ExpertPair::default()
-        };
-        let pairs: Vec<ExpertPair> = regrets.iter().map(pair).collect();
-        let mean = regrets.iter().sum::<f64>() / regrets.len() as f64;
-        Optimum::of(&BehaviorOutcome {
-            distance: mean / 200.0,
-            regret_in_a: 0.0,
-            regret_in_b: mean,
-            success_difference: 0.0,
-            pairs,
-        })
+        let pairs: Vec<_> = regrets.iter().map(|regret| [0.0, *regret, 0.0]).collect();
+        Optimum::of(&pairs)
     }
 
     #[test]

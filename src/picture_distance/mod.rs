@@ -2,12 +2,13 @@
 
 mod poses;
 
-use driftworld_env::{Camera, Catalogue, CpuRenderer, EnvError, Environment, Target};
+use driftworld_env::{Camera, Catalogue, CpuRenderer, Environment, Target};
 use driftworld_similarity::SimilarityError;
 use driftworld_similarity::picture::{Picture, PictureMeasure, picture_oklab_sums, views_distance};
 use driftworld_spec::World;
 
-pub use poses::{Pose, poses};
+use crate::distances::DistancesError;
+pub(crate) use poses::{Pose, poses};
 
 /// Number of positions along each side of the arena.
 pub(crate) const GRID_SIDE: u32 = 4;
@@ -23,64 +24,23 @@ const PIXELS: usize = (SIDE * SIDE) as usize;
 /// Samples per pixel along each side: small pictures with one sample per pixel flicker.
 const SUPERSAMPLING: u32 = 2;
 
-/// Errors raised while comparing worlds by their looks.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PictureDistanceError {
-    /// No position is free in every world.
-    #[error(
-        "pictures: found none of {tried} places free in all worlds, expected at least 1; if the worlds' walls are in different \
-         places, as in mazes of different sizes, compare by worlds or by parameters"
-    )]
-    NoPlace {
-        /// Number of positions tried.
-        tried: u32,
-    },
-    /// A world cannot be rendered.
-    #[error(transparent)]
-    World(#[from] EnvError),
-    /// Pictures cannot be compared.
-    #[error(transparent)]
-    Compare(#[from] SimilarityError),
-}
-
-impl PictureDistanceError {
-    /// The stable name of this kind of error.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NoPlace { .. } => "pictures/no-place",
-            Self::World(error) => error.code(),
-            Self::Compare(error) => error.code(),
-        }
-    }
-}
-
 /// An agent's views of one world from some poses, rendered once, for comparison with other worlds from the same poses.
 ///
 /// Each picture uses the world's own camera: its height and its field of view are part of the view.
 #[derive(Clone, Debug)]
-pub struct Views {
+pub(crate) struct Views {
     /// Picture after picture, `(poses, SIDE, SIDE, 3)` bytes.
     rgb: Vec<u8>,
     /// Which pixels show an object, `(poses, SIDE, SIDE)`.
     objects: Vec<bool>,
 }
 
-/// The visual difference of two worlds, separated into objects and surroundings.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PictureParts {
-    /// Mean Oklab difference of the pixels that show an object in either world, `0..=1`; 0 without any.
-    pub objects: f64,
-    /// Mean Oklab difference of all other pixels.
-    pub surroundings: f64,
-}
-
 impl Views {
     /// Renders the views on the CPU, which gives the same bytes on every machine.
     ///
     /// # Errors
-    /// [`PictureDistanceError::World`] if a picture cannot be rendered.
-    pub fn new(world: &World, poses: &[Pose], catalogue: &Catalogue) -> Result<Self, PictureDistanceError> {
+    /// [`DistancesError::Env`] if a picture cannot be rendered.
+    pub(crate) fn new(world: &World, poses: &[Pose], catalogue: &Catalogue) -> Result<Self, DistancesError> {
         let environment = Environment::with_catalogue(world.clone(), catalogue.clone());
         let agent = &world.agent_params;
         let mut renderer = CpuRenderer::new();
@@ -113,7 +73,7 @@ impl Views {
     /// # Panics
     /// If an index is out of range.
     #[must_use]
-    pub fn only(&self, poses: &[usize]) -> Self {
+    pub(crate) fn only(&self, poses: &[usize]) -> Self {
         let rgb = poses
             .iter()
             .flat_map(|k| &self.rgb[k * PIXELS * 3..(k + 1) * PIXELS * 3]);
@@ -125,12 +85,12 @@ impl Views {
     }
 
     /// Whether there is no picture.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.rgb.is_empty()
     }
 
     /// The pictures in the order of their poses.
-    pub fn pictures(&self) -> Vec<Picture<'_>> {
+    pub(crate) fn pictures(&self) -> Vec<Picture<'_>> {
         let each = self.rgb.chunks_exact(PIXELS * 3);
         each.map(|rgb| Picture::new(rgb, SIDE as usize, SIDE as usize).expect("each chunk has the picture's size"))
             .collect()
@@ -139,17 +99,18 @@ impl Views {
     /// Mean distance of the pictures of two worlds, pose by pose, in `0..=1`.
     ///
     /// # Errors
-    /// [`PictureDistanceError::Compare`] unless both have the same number of pictures, all of the same size.
-    pub fn distance(&self, other: &Self, measure: PictureMeasure) -> Result<f64, PictureDistanceError> {
+    /// [`DistancesError::Similarity`] unless both have the same number of pictures, all of the same size.
+    pub(crate) fn distance(&self, other: &Self, measure: PictureMeasure) -> Result<f64, DistancesError> {
         Ok(views_distance(&self.pictures(), &other.pictures(), measure)?)
     }
 
     /// The visual differences where objects are visible, and elsewhere, separated so that ground and sky do not drown out small
-    /// objects. Symmetric, each in `0..=1`; not a metric, because each pair of worlds compares different pixels.
+    /// objects: the mean Oklab difference of the pixels that show an object in either world (0 without any), and of all others.
+    /// Symmetric, each in `0..=1`; not a metric, because each pair of worlds compares different pixels.
     ///
     /// # Errors
     /// As [`Views::distance`].
-    pub fn parts(&self, other: &Self) -> Result<PictureParts, PictureDistanceError> {
+    pub(crate) fn parts(&self, other: &Self) -> Result<[f64; 2], DistancesError> {
         let (ours, theirs) = (self.pictures(), other.pictures());
         if ours.len() != theirs.len() {
             let (of, found, expected) = ("pictures of the second set", theirs.len(), ours.len());
@@ -168,8 +129,7 @@ impl Views {
                 sum.1 += count;
             }
         }
-        let [objects, surroundings] = sums.map(|(sum, count)| sum / count.max(1) as f64);
-        Ok(PictureParts { objects, surroundings })
+        Ok(sums.map(|(sum, count)| sum / count.max(1) as f64))
     }
 }
 
@@ -225,15 +185,15 @@ mod tests {
             let views = views(&[a, b]);
             let [a, b] = [&views[0], &views[1]];
             assert_eq!(a.parts(b).unwrap(), b.parts(a).unwrap());
-            assert_eq!(a.parts(a).unwrap(), PictureParts::default());
+            assert_eq!(a.parts(a).unwrap(), [0.0; 2]);
             (a.parts(b).unwrap(), a.distance(b, PictureMeasure::Oklab).unwrap())
         };
         let [red, blue] = ["[1.0, 0.0, 0.0]", "[0.0, 0.0, 1.0]"].map(|color| with_tree(1.0, color));
         let (found, whole) = parts(&red, &blue);
-        assert!(found.objects > 20.0 * whole, "{found:?} {whole}");
-        assert!(found.surroundings < whole, "{found:?} {whole}");
+        assert!(found[0] > 20.0 * whole, "{found:?} {whole}");
+        assert!(found[1] < whole, "{found:?} {whole}");
         let (found, _) = parts(&world("", ""), &world("\"ground_color\": [0.05, 0.05, 0.05]", ""));
-        assert!(found.objects == 0.0 && found.surroundings > 0.05, "{found:?}");
+        assert!(found[0] == 0.0 && found[1] > 0.05, "{found:?}");
     }
 
     #[test]

@@ -3,15 +3,16 @@
 use driftworld_env::{Catalogue, Environment};
 use driftworld_spec::World;
 
-use super::{GRID_SIDE, HEADINGS, PictureDistanceError};
+use super::{GRID_SIDE, HEADINGS};
+use crate::distances::DistancesError;
 
 /// A position and a direction of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub(crate) struct Pose {
     /// Metres east and north of the arena's centre.
-    pub position: [f64; 2],
+    pub(crate) position: [f64; 2],
     /// Degrees clockwise from north (+y).
-    pub heading_deg: f64,
+    pub(crate) heading_deg: f64,
 }
 
 /// Poses that are free in all of these worlds.
@@ -21,8 +22,8 @@ pub struct Pose {
 /// solid object) are left out. The order is row by row from the south-west.
 ///
 /// # Errors
-/// [`PictureDistanceError::NoPlace`] if no cell is left.
-pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, PictureDistanceError> {
+/// [`DistancesError::NoPlace`] if no cell is left.
+pub(crate) fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, DistancesError> {
     let sizes = worlds.iter().map(|world| world.environment_params.arena_size());
     let [width, depth] = sizes.fold([f64::INFINITY; 2], |smallest, size| {
         [smallest[0].min(size[0]), smallest[1].min(size[1])]
@@ -50,7 +51,7 @@ pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, Pict
     }
     if poses.is_empty() {
         let tried = GRID_SIDE * GRID_SIDE;
-        return Err(PictureDistanceError::NoPlace { tried });
+        return Err(DistancesError::NoPlace { tried });
     }
     Ok(poses)
 }
