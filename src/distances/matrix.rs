@@ -1,5 +1,7 @@
 //! Measures all distances among variants, as a labelled matrix.
 
+use std::collections::BTreeMap;
+
 use driftworld_similarity::{DistanceMatrix, Placements, SimilarityError, VariantMeasure, Weights, Worlds};
 use driftworld_spec::{By, Variant, World};
 use rayon::prelude::*;
@@ -126,24 +128,20 @@ pub fn variant_matrix_while(
     }
     // Prepare one world of each variant at a time, because the prepared data are large.
     let size = variants.len();
-    let pairs: Vec<(usize, usize)> = (0..size).flat_map(|a| (a + 1..size).map(move |b| (a, b))).collect();
-    let mut means: Vec<Means> = pairs.iter().map(|_| Means::new(by)).collect();
+    let pairs = (0..size).flat_map(|a| (a + 1..size).map(move |b| (a, b)));
+    let mut means: BTreeMap<(usize, usize), Means> = pairs.map(|pair| (pair, Means::new(by))).collect();
     for k in 0..count {
         let worlds: Vec<World> = drawn.iter().map(|worlds| worlds[k].clone()).collect();
         check_cancelled()?;
         let prepared = Pairs::new(by, &worlds, &sample.catalogue)?;
-        pairs.par_iter().zip(&mut means).try_for_each(|((a, b), mean)| {
+        means.par_iter_mut().try_for_each(|((a, b), mean)| {
             check_cancelled()?;
             mean.add(&prepared.between(*a, *b)?);
             Ok::<_, DistancesError>(())
         })?;
     }
-    let pair_index = |a: usize, b: usize| {
-        let (a, b) = (a.min(b), a.max(b));
-        a * size - a * (a + 1) / 2 + (b - a - 1)
-    };
     let matrix = DistanceMatrix::measure(labels, |a, b| {
-        Ok::<_, DistancesError>(means[pair_index(a, b)].distance(&weights).total)
+        Ok::<_, DistancesError>(means[&(a.min(b), a.max(b))].distance(&weights).total)
     })?;
     Ok(match world_measure(by) {
         // A mean of pseudometrics is a pseudometric.
