@@ -9,7 +9,7 @@ use rustyline::history::MemHistory;
 use rustyline::validate::Validator;
 use rustyline::{Config, Context, Helper};
 
-use super::line::COMMANDS;
+use super::line;
 use super::session::Names;
 use crate::Failure;
 use crate::modality;
@@ -47,11 +47,10 @@ impl Completions {
     /// The candidates for the word after the given ones.
     fn after(&self, before: &[&str]) -> Vec<String> {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-        let modalities = || modality::NAMES.map(str::to_owned);
         match before {
-            [] | ["help"] => COMMANDS.map(|(name, _, _)| name.to_owned()).into(),
-            ["show"] => modalities().into(),
-            ["screenshot", _] => modalities().into_iter().chain(["map".to_owned()]).collect(),
+            [] | ["help"] => owned(&line::names()),
+            ["show"] => owned(&modality::NAMES),
+            ["screenshot", _] => owned(&[&modality::NAMES[..], &["map"]].concat()),
             ["log"] => owned(&Category::names()),
             ["log", _] => owned(&["on", "off"]),
             ["state"] => owned(&["--json"]),
