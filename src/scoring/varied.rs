@@ -1,35 +1,30 @@
 //! [`Varied`]: which properties differ between aggregated lifetimes, and hence what their intervals cover.
 
+use std::array;
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use driftworld_metrics::{BlockType, Log};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-/// The properties of a lifetime that other lifetimes may share.
+/// The properties that lifetimes may share: the order in which tasks are learned, the worlds, the agent's name in logs, and the
+/// run seed or the learner's own seed, which determine the agent's random numbers. If the evaluation worlds are the same, an
+/// interval does not cover other worlds.
+const PROPERTIES: [&str; 5] = ["order", "learning worlds", "evaluation worlds", "agent", "run seed"];
+
+/// The value of each property for one lifetime; `None` if it is not logged.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Makeup {
-    order: Vec<String>,
-    /// A hash of the worlds, independent of their order; `None` if they are not logged.
-    learned: Option<u64>,
-    evaluated: Option<u64>,
-    agent: String,
-    run_seed: String,
-}
+pub(super) struct Makeup([Option<String>; PROPERTIES.len()]);
 
 /// Whether each property differs between lifetimes; `None` if it is not logged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Varied {
-    /// The order in which tasks are learned.
-    pub order: bool,
-    /// The worlds used for learning.
-    pub learning_worlds: Option<bool>,
-    /// The worlds used for evaluation. If they are the same, an interval does not cover other worlds.
-    pub evaluation_worlds: Option<bool>,
-    /// The agent, by its name in logs.
-    pub agent: bool,
-    /// The run seed or the learner's own seed, which determine the agent's random numbers.
-    pub run_seed: bool,
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Varied([Option<bool>; PROPERTIES.len()]);
+
+impl Serialize for Varied {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let keys = PROPERTIES.map(|name| name.replace(' ', "_"));
+        serializer.collect_map(keys.into_iter().zip(self.0))
+    }
 }
 
 impl Makeup {
@@ -44,20 +39,21 @@ impl Makeup {
         }
         let logged = |key: &str| log.scenario_info.extra.get(key);
         let text = |value: Option<&serde_json::Value>| value.map_or_else(String::new, ToString::to_string);
-        Self {
-            order,
-            learned: worlds(log, BlockType::Train),
-            evaluated: worlds(log, BlockType::Test),
-            agent: text(logged("agent")),
-            run_seed: ["/run_seed", "/agent/seed"]
-                .map(|place| text(logged("made_from").and_then(|fingerprints| fingerprints.pointer(place))))
-                .join(" "),
-        }
+        let seeds = ["/run_seed", "/agent/seed"]
+            .map(|place| text(logged("made_from").and_then(|fingerprints| fingerprints.pointer(place))));
+        Self([
+            Some(format!("{order:?}")),
+            worlds(log, BlockType::Train),
+            worlds(log, BlockType::Test),
+            Some(text(logged("agent"))),
+            Some(seeds.join(" ")),
+        ])
     }
 }
 
-/// A hash of the worlds in one kind of block: their seeds or files, with their indices.
-fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
+/// A hash of the worlds in one kind of block: their seeds or files, with their indices, in any order; `None` if
+/// they are not logged.
+fn worlds(log: &Log, kind: BlockType) -> Option<String> {
     let rows = &log.rows;
     let indices = rows.metric("world_index")?;
     let params = rows.task_params();
@@ -78,7 +74,7 @@ fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
     }
     let mut hash = DefaultHasher::new();
     found.hash(&mut hash);
-    Some(hash.finish())
+    Some(hash.finish().to_string())
 }
 
 impl Varied {
@@ -88,34 +84,17 @@ impl Varied {
         if others.is_empty() {
             return None;
         }
-        let differs = |is_same: &dyn Fn(&Makeup) -> bool| !others.iter().all(is_same);
-        let worlds = |of: &dyn Fn(&Makeup) -> Option<u64>| {
-            let is_logged = lifetimes.iter().all(|lifetime| of(lifetime).is_some());
-            is_logged.then(|| differs(&|other| of(other) == of(first)))
-        };
-        Some(Self {
-            order: differs(&|other| other.order == first.order),
-            learning_worlds: worlds(&|lifetime| lifetime.learned),
-            evaluation_worlds: worlds(&|lifetime| lifetime.evaluated),
-            agent: differs(&|other| other.agent == first.agent),
-            run_seed: differs(&|other| other.run_seed == first.run_seed),
-        })
+        Some(Self(array::from_fn(|k| {
+            let is_logged = lifetimes.iter().all(|lifetime| lifetime.0[k].is_some());
+            is_logged.then(|| others.iter().any(|other| other.0[k] != first.0[k]))
+        })))
     }
 
     /// The differences in one or two sentences.
     pub fn sentence(self) -> String {
-        let properties = [
-            ("order", Some(self.order)),
-            ("learning worlds", self.learning_worlds),
-            ("evaluation worlds", self.evaluation_worlds),
-            ("agent", Some(self.agent)),
-            ("run seed", Some(self.run_seed)),
-        ];
         let of = |wanted: Option<bool>| {
-            let names = properties
-                .iter()
-                .filter(|(_, differs)| *differs == wanted)
-                .map(|(name, _)| *name);
+            let properties = PROPERTIES.into_iter().zip(self.0);
+            let names = properties.filter_map(|(name, differs)| (differs == wanted).then_some(name));
             names.collect::<Vec<_>>().join(", ")
         };
         let mut parts = Vec::new();
@@ -137,13 +116,11 @@ mod tests {
     use super::*;
 
     fn makeup(order: &[&str], learned: u64, evaluated: Option<u64>) -> Makeup {
-        Makeup {
-            order: order.iter().map(|task| (*task).to_owned()).collect(),
-            learned: Some(learned),
-            evaluated,
-            agent: "random".to_owned(),
-            run_seed: String::new(),
-        }
+        let worlds = [Some(learned), evaluated].map(|hash| hash.map(|hash| hash.to_string()));
+        let [learned, evaluated] = worlds;
+        let others = ["random", ""].map(|text| Some(text.to_owned()));
+        let [agent, run_seed] = others;
+        Makeup([Some(format!("{order:?}")), learned, evaluated, agent, run_seed])
     }
 
     #[test]
