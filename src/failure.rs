@@ -47,19 +47,22 @@ pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Resu
 /// );
 /// ```
 #[derive(Clone, Debug)]
-pub enum Failure {
-    /// The input or the output path is invalid.
-    Input(FailureText, Option<Cause>),
-    /// The arguments contradict each other.
-    Usage(FailureText),
+pub struct Failure {
+    /// The names of arguments are marked.
+    text: String,
+    cause: Option<Cause>,
+    is_usage: bool,
 }
 
-/// The text of a failure, independent of how arguments are named.
-#[derive(Clone, Debug)]
-pub struct FailureText(String);
+fn is_name(text: &str) -> bool {
+    !text.is_empty()
+        && text
+            .bytes()
+            .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+}
 
-impl FailureText {
-    /// With arguments as command options: `--window-length`.
+impl Failure {
+    /// The text with arguments as command options: `--window-length`. Displayed, they are as in Rust and Python: `window_length`.
     pub fn for_command(&self) -> String {
         self.with(|name| match name {
             // The option `--order` takes purposes and methods.
@@ -68,13 +71,8 @@ impl FailureText {
         })
     }
 
-    /// With arguments as named in Rust and Python: `window_length`.
-    pub fn for_library(&self) -> String {
-        self.with(str::to_owned)
-    }
-
     fn with(&self, named: impl Fn(&str) -> String) -> String {
-        let (mut shown, mut rest) = (String::with_capacity(self.0.len()), self.0.as_str());
+        let (mut shown, mut rest) = (String::with_capacity(self.text.len()), self.text.as_str());
         while let Some((before, behind)) = rest.split_once(MARK) {
             shown.push_str(before);
             rest = match behind.split_once(MARK) {
@@ -90,36 +88,35 @@ impl FailureText {
         }
         shown + rest
     }
-}
 
-fn is_name(text: &str) -> bool {
-    !text.is_empty()
-        && text
-            .bytes()
-            .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
-}
-
-impl From<String> for FailureText {
-    fn from(text: String) -> Self {
-        Self(text)
+    /// Whether the arguments contradict each other; otherwise, the input or the output path is invalid.
+    pub fn is_usage(&self) -> bool {
+        self.is_usage
     }
-}
 
-impl Failure {
+    /// The error that caused the failure, if any.
+    pub fn cause(&self) -> Option<Cause> {
+        self.cause.clone()
+    }
+
     /// The exit code of a command that fails with this.
     pub(crate) fn exit_code(&self) -> u8 {
-        match self {
-            Self::Input(..) => 1,
-            Self::Usage(_) => 2,
-        }
+        if self.is_usage { 2 } else { 1 }
     }
 
     pub(crate) fn usage(text: impl Into<String>) -> Self {
-        Self::Usage(FailureText(text.into()))
+        Self {
+            is_usage: true,
+            ..Self::input(text)
+        }
     }
 
     pub(crate) fn input(text: impl Into<String>) -> Self {
-        Self::Input(FailureText(text.into()), None)
+        Self {
+            text: text.into(),
+            cause: None,
+            is_usage: false,
+        }
     }
 
     /// The failure of a file or a folder.
@@ -134,46 +131,34 @@ impl Failure {
 
     /// A failure with its own text, caused by an error.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
-        Self::Input(FailureText(text.into()), Some(Arc::new(error)))
+        Self {
+            cause: Some(Arc::new(error)),
+            ..Self::input(text)
+        }
     }
 
     /// Prefixes the folder unless the text already names it.
-    pub(crate) fn at(self, folder: &Path) -> Self {
+    pub(crate) fn at(mut self, folder: &Path) -> Self {
         let shown = folder.shown().to_string();
-        match self {
-            Self::Input(text, cause) if !text.0.contains(&shown) => {
-                Self::Input(FailureText(format!("{shown}: {}", text.0)), cause)
-            }
-            other => other,
+        if !self.is_usage && !self.text.contains(&shown) {
+            self.text = format!("{shown}: {}", self.text);
         }
+        self
     }
 
     /// Combines several failures; keeps the cause of the first.
     pub(crate) fn of_several(failures: &[&Self]) -> Self {
-        let texts: Vec<&str> = failures.iter().map(|failure| failure.text().0.as_str()).collect();
-        let cause = failures.first().and_then(|failure| failure.cause());
-        Self::Input(FailureText(texts.join("\n")), cause)
-    }
-
-    /// The text.
-    pub fn text(&self) -> &FailureText {
-        match self {
-            Self::Input(text, _) | Self::Usage(text) => text,
-        }
-    }
-
-    /// The error that caused the failure, if any.
-    pub fn cause(&self) -> Option<Cause> {
-        match self {
-            Self::Input(_, cause) => cause.clone(),
-            Self::Usage(_) => None,
+        let texts: Vec<&str> = failures.iter().map(|failure| failure.text.as_str()).collect();
+        Self {
+            cause: failures.first().and_then(|failure| failure.cause()),
+            ..Self::input(texts.join("\n"))
         }
     }
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().for_library())
+        f.write_str(&self.with(str::to_owned))
     }
 }
 
@@ -196,7 +181,7 @@ mod tests {
             argument("noise")
         ));
         assert_eq!(
-            failure.text().for_command(),
+            failure.for_command(),
             "--window-length: found 0, expected 1 or more; leave --noise out"
         );
         assert_eq!(
@@ -219,7 +204,7 @@ mod tests {
 
     #[test]
     fn text_around_an_argument_is_unchanged() {
-        let shown = |text: String| FailureText::from(text).for_command();
+        let shown = |text: String| Failure::input(text).for_command();
         for before in texts() {
             assert_eq!(shown(before.clone()), before);
             for behind in texts() {

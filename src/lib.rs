@@ -121,7 +121,7 @@ mod wrap;
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use failure::argument;
 pub(crate) use failure::within;
-pub use failure::{Cause, Failure, FailureText, Warn};
+pub use failure::{Cause, Failure, Warn};
 pub use libraries::MAX_LIBRARY_BYTES;
 #[cfg(not(target_family = "wasm"))]
 pub use matrix_file::MAX_MATRIX_BYTES;

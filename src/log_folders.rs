@@ -176,9 +176,9 @@ impl Search {
         }
         for below in self.entries(folder)? {
             match below {
-                (Entry::Folder, below) => self.collect(&below, levels - 1)?,
-                (Entry::Link, link) if has_info(&link) => self.found.push(link),
-                (Entry::Link, _) => {}
+                (false, below) => self.collect(&below, levels - 1)?,
+                (true, link) if has_info(&link) => self.found.push(link),
+                (true, _) => {}
             }
         }
         check_count(folder, self.found.len())
@@ -199,7 +199,7 @@ impl Search {
         Ok(false)
     }
 
-    fn entries(&mut self, folder: &Path) -> Result<Vec<(Entry, PathBuf)>, Failure> {
+    fn entries(&mut self, folder: &Path) -> Result<Vec<(bool, PathBuf)>, Failure> {
         self.count(folder)?;
         entries(folder).map_err(|error| Failure::in_file(folder, format!("cannot be read: {error}")))
     }
@@ -234,23 +234,14 @@ fn is_log(folder: &Path) -> bool {
     has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
 }
 
-/// An entry of a folder that may hold logs.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-enum Entry {
-    Folder,
-    Link,
-}
-
-/// The folders in a folder, and the links, sorted by name.
-fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
+/// The folders in a folder, then the links, each with whether it is a link; sorted by name.
+fn entries(folder: &Path) -> std::io::Result<Vec<(bool, PathBuf)>> {
     let mut below = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let kind = entry.file_type()?;
-        if kind.is_dir() {
-            below.push((Entry::Folder, entry.path()));
-        } else if kind.is_symlink() {
-            below.push((Entry::Link, entry.path()));
+        if kind.is_dir() || kind.is_symlink() {
+            below.push((kind.is_symlink(), entry.path()));
         }
     }
     below.sort();
@@ -261,7 +252,7 @@ fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
 fn subfolders(folder: &Path) -> Vec<PathBuf> {
     // The search reports a folder that cannot be listed.
     let entries = entries(folder).unwrap_or_default().into_iter();
-    let folders = entries.filter(|(kind, _)| *kind == Entry::Folder);
+    let folders = entries.filter(|(is_link, _)| !is_link);
     folders.map(|(_, path)| path).collect()
 }
 
@@ -334,7 +325,7 @@ mod tests {
             ["deep/c"]
         );
         let message = named(&[root.join("deep")]).unwrap_err();
-        assert!(message.to_string().contains("3 logs such as") && message.text().for_command().contains("--recursive"));
+        assert!(message.to_string().contains("3 logs such as") && message.for_command().contains("--recursive"));
         assert!(
             named(&[root.join("other")])
                 .unwrap_err()

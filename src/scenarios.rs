@@ -82,12 +82,13 @@ impl ScenarioFile {
         Contents::of_text(&text) == Some(Contents::Scenario)
     }
 
-    /// Plans the scenario with everything that it names.
+    /// Plans the scenario with everything that it names. A missing world file is an error unless the file with the most similar
+    /// name `may_stand_in` for it.
     ///
     /// # Errors
     /// As [`Plan::with_undrawable`].
-    pub fn plan(&self, missing: Missing, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
-        self.plan_named(missing, undrawable, warn).map(|(plan, _)| plan)
+    pub fn plan(&self, may_stand_in: bool, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
+        self.plan_named(may_stand_in, undrawable, warn).map(|(plan, _)| plan)
     }
 
     /// Like [`Self::plan`], but also returns the tasks and world files found, by their names in the scenario.
@@ -96,7 +97,7 @@ impl ScenarioFile {
     /// As [`Plan::with_undrawable`].
     pub fn plan_named(
         &self,
-        missing: Missing,
+        may_stand_in: bool,
         undrawable: Undrawable,
         warn: Warn,
     ) -> Result<(Plan, Named), CurriculumError> {
@@ -109,7 +110,7 @@ impl ScenarioFile {
                 Ok(task)
             },
             world: &mut |path| {
-                let found = self.world(path, missing, warn)?;
+                let found = self.world(path, may_stand_in, warn)?;
                 worlds.insert(path.to_owned(), found.clone());
                 Ok(found)
             },
@@ -119,16 +120,17 @@ impl ScenarioFile {
     }
 
     /// The world file that a regime names, relative to the scenario's folder, or else directly beside the scenario.
-    fn world(&self, named: &str, missing: Missing, warn: Warn) -> Result<FoundWorld, String> {
+    fn world(&self, named: &str, may_stand_in: bool, warn: Warn) -> Result<FoundWorld, String> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let named = Path::new(named);
         let beside = named.file_name().map_or_else(PathBuf::new, |name| folder.join(name));
         let expected = folder.join(named);
+        let found = |path: &Path, note| {
+            let world = self.read_world(path)?;
+            Ok(FoundWorld { world, note })
+        };
         if expected.is_file() {
-            return Ok(FoundWorld {
-                world: self.read_world(&expected)?,
-                note: None,
-            });
+            return found(&expected, None);
         }
         if beside.is_file() {
             warn(format!(
@@ -136,10 +138,7 @@ impl ScenarioFile {
                 expected.shown(),
                 beside.shown()
             ));
-            return Ok(FoundWorld {
-                world: self.read_world(&beside)?,
-                note: None,
-            });
+            return found(&beside, None);
         }
         let searched = if expected == beside {
             expected.shown().to_string()
@@ -147,29 +146,22 @@ impl ScenarioFile {
             format!("{} and {}", expected.shown(), beside.shown())
         };
         let stand_in = self.nearest(&[&expected, &beside]);
-        match (stand_in, missing) {
-            (Some(file), Missing::StandIn) => {
-                let used = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let note = format!("not there; {used} stood in for it");
-                warn(format!("{}: {note}", named.shown()));
-                Ok(FoundWorld {
-                    world: self.read_world(&file)?,
-                    note: Some(note),
-                })
-            }
-            (stand_in, _) => {
-                let option = if self.original {
-                    "omit --no-stand-in"
-                } else {
-                    "add --stand-in"
-                };
-                let advice = stand_in.map_or_else(String::new, |file| format!("; or {option} to use {}", file.shown()));
-                Err(format!(
-                    "found no file {:?}, looked for {searched}, expected a world file; create it{advice}",
-                    named.display().to_string()
-                ))
-            }
+        if let Some(file) = stand_in.as_ref().filter(|_| may_stand_in) {
+            let used = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let note = format!("not there; {used} stood in for it");
+            warn(format!("{}: {note}", named.shown()));
+            return found(file, Some(note));
         }
+        let option = if self.original {
+            "omit --no-stand-in"
+        } else {
+            "add --stand-in"
+        };
+        let advice = stand_in.map_or_else(String::new, |file| format!("; or {option} to use {}", file.shown()));
+        Err(format!(
+            "found no file {:?}, looked for {searched}, expected a world file; create it{advice}",
+            named.display().to_string()
+        ))
     }
 
     /// The world file with the most similar name in the folders that were searched.
@@ -197,16 +189,11 @@ impl ScenarioFile {
     fn read_world(&self, path: &Path) -> Result<World, String> {
         let name = path.display().to_string();
         let text = documents::text_of(path, &[Contents::World]).map_err(|error| error.to_string())?;
-        let ours = World::from_json(&name, &text);
-        match (self.original, ours) {
-            (false, Ok(world)) => Ok(world),
-            (original, ours) => match (World::from_l2explorer(&name, &text), ours) {
-                (Ok((world, _)), _) => Ok(world),
-                (Err(theirs), _) if original => Err(theirs.to_string()),
-                (Err(theirs), Ok(_)) => Err(theirs.to_string()),
-                (Err(_), Err(ours)) => Err(ours.to_string()),
-            },
+        let theirs = || World::from_l2explorer(&name, &text).map(|(world, _)| world);
+        if self.original {
+            return theirs().map_err(|error| error.to_string());
         }
+        World::from_json(&name, &text).or_else(|ours| theirs().map_err(|_| ours.to_string()))
     }
 }
 
@@ -248,22 +235,6 @@ pub fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError
         return tasks::task(path);
     }
     tasks::task(name)
-}
-
-/// How a missing world file is treated.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Missing {
-    /// It is an error.
-    Refused,
-    /// The file with the most similar name is used instead.
-    StandIn,
-}
-
-impl Missing {
-    /// [`Self::StandIn`] if a different world may replace it, else [`Self::Refused`].
-    pub fn may_stand_in(may: bool) -> Self {
-        if may { Self::StandIn } else { Self::Refused }
-    }
 }
 
 /// The plan of a scenario without world files, whose tasks are built in or given by paths from the working folder.

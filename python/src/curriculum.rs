@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use driftworld::clock::Clock;
-use driftworld::scenarios::{Missing, Named, ScenarioFile, task_from};
+use driftworld::scenarios::{Named, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
 use driftworld_curriculum::{
     CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Repeats,
@@ -58,8 +58,8 @@ impl PyPlan {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
             // L2Explorer's own scenario refers to a map that is not included with it, and has to run unchanged.
-            let missing = Missing::may_stand_in(stand_in.unwrap_or(file.original));
-            let planned = file.plan_named(missing, undrawable(skip_undrawable), &mut warn);
+            let may_stand_in = stand_in.unwrap_or(file.original);
+            let planned = file.plan_named(may_stand_in, undrawable(skip_undrawable), &mut warn);
             planned.map_err(|error| because(&path, error))
         })?;
         Ok(Self { plan, named, warnings })

@@ -82,7 +82,7 @@ impl From<Failure> for Error {
             Some(cause) if cause.is::<EnvError>() => "EnvError",
             Some(cause) if cause.is::<MetricsError>() => "MetricsError",
             Some(cause) if cause.is::<CurriculumError>() => "CurriculumError",
-            None if matches!(failure, Failure::Usage(_)) => return value_error(&failure.to_string()),
+            None if failure.is_usage() => return value_error(&failure.to_string()),
             _ => "DriftworldError",
         };
         refused(class, &failure)

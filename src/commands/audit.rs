@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::curriculum::{AuditOptions, AuditRow, Undrawable, audit};
-use crate::scenarios::{Missing, ScenarioFile};
+use crate::scenarios::ScenarioFile;
 use crate::table::table;
 use clap::Args;
 use driftworld_atomic_files::ScratchFolder;
@@ -57,7 +57,7 @@ impl Audit {
             let folder = ScratchFolder::new(".driftworld-audit-", &std::env::temp_dir())?;
             let mut plan = |scenario: &_| {
                 file.with_scenario(scenario)
-                    .plan(Missing::StandIn, Undrawable::Refused, &mut output::warning)
+                    .plan(true, Undrawable::Refused, &mut output::warning)
             };
             let rows = audit(&file.scenario, &mut plan, folder.path(), options)?;
             let count = |passed| rows.iter().filter(|row| row.passed == passed).count();

@@ -260,7 +260,7 @@ subcommands! {
 
 /// Prints on standard error why the command failed; returns the exit code.
 fn report(failure: &Failure) -> u8 {
-    output::note(format!("error: {}", failure.text().for_command()));
+    output::note(format!("error: {}", failure.for_command()));
     interrupt::exit_code().unwrap_or_else(|| failure.exit_code())
 }
 

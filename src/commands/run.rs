@@ -10,7 +10,7 @@ use crate::curriculum::{
 };
 use crate::env::Catalogue;
 use crate::metrics::MetricsError;
-use crate::scenarios::{Missing, ScenarioFile};
+use crate::scenarios::ScenarioFile;
 use crate::spec::BlockKind;
 use crate::tasks;
 use clap::Args;
@@ -116,13 +116,12 @@ impl Run {
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // L2Explorer's own scenario names a map that L2Explorer does not include, and must run unchanged.
         let stand_in = self.stand_in || (file.original && !self.no_stand_in);
-        let missing = Missing::may_stand_in(stand_in);
         let undrawable = if self.skip_undrawable {
             Undrawable::Skipped
         } else {
             Undrawable::Refused
         };
-        let plan = file.plan(missing, undrawable, &mut output::warning);
+        let plan = file.plan(stand_in, undrawable, &mut output::warning);
         let mut plan = plan.map_err(|error| match &error {
             CurriculumError::World { .. } => Failure::input(format!(
                 "{error}\nnothing was run: fix the task (driftworld validate SCENARIO --worlds 100 finds what cannot \

@@ -7,7 +7,7 @@ use crate::contents::Contents;
 use crate::curriculum::{Trial, Tried, Undrawable, try_expert, try_worlds};
 use crate::documents::{self, Checked, Kind};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_of};
-use crate::scenarios::{Missing, ScenarioFile, task_from};
+use crate::scenarios::{ScenarioFile, task_from};
 use crate::spec::{Classes, Problem, SpecError, TaskSpec};
 use crate::{remarks, tasks};
 use clap::Args;
@@ -169,7 +169,7 @@ impl Validate {
         if self.elements && is_sound && is_drawn {
             match self.try_elements(path, &name, &text, checked.kind) {
                 Ok(found) => elements = found,
-                Err(why) => failure = Some(("document/elements", format!("{name}: {}", why.text().for_command()))),
+                Err(why) => failure = Some(("document/elements", format!("{name}: {}", why.for_command()))),
             }
         }
         Ok(Found {
@@ -188,7 +188,7 @@ impl Validate {
             Kind::Scenario => {
                 let warn = &mut |_| {};
                 let file = ScenarioFile::from_text(path, text, warn)?;
-                let plan = file.plan(Missing::Refused, Undrawable::Skipped, warn)?;
+                let plan = file.plan(false, Undrawable::Skipped, warn)?;
                 plan.tasks().values().map(Arc::clone).collect()
             }
             // L2Explorer's scenarios, worlds and maps make no claims about elements.
@@ -226,7 +226,7 @@ impl Validate {
                 let catalogue = self
                     .libraries
                     .catalogue()
-                    .map_err(|failure| ("document/unreadable", failure.text().for_command().clone()))?;
+                    .map_err(|failure| ("document/unreadable", failure.for_command()))?;
                 let worlds = u64::from(self.worlds);
                 let tried = variants.par_iter().map(|variant| {
                     let mut trial = try_worlds(variant, self.seed, worlds);
@@ -240,8 +240,7 @@ impl Validate {
                 let warn = &mut |_| {};
                 let file =
                     ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;
-                let missing = Missing::may_stand_in(file.original);
-                let plan = file.plan(missing, Undrawable::Skipped, warn);
+                let plan = file.plan(file.original, Undrawable::Skipped, warn);
                 let plan = plan.map_err(|error| (error.code(), error.to_string()))?;
                 for (task, spec) in plan.tasks() {
                     tasks::check_classes(task, spec, classes).map_err(|error| (error.code(), error.to_string()))?;
@@ -281,7 +280,7 @@ impl Verdict {
         let found = match &self.found {
             Ok(found) => found,
             Err(failure) => {
-                output::note(failure.text().for_command());
+                output::note(failure.for_command());
                 return Ok(());
             }
         };
@@ -321,7 +320,7 @@ impl Verdict {
         let found = match &self.found {
             Ok(found) => found,
             Err(failure) => {
-                let problem = json!({ "code": "document/unreadable", "message": failure.text().for_command() });
+                let problem = json!({ "code": "document/unreadable", "message": failure.for_command() });
                 return json!({ "file": self.path, "kind": null, "valid": false, "problems": [problem], "warnings": [] });
             }
         };

@@ -50,7 +50,7 @@ pub(crate) enum Reply {
 /// A failure as one sentence.
 #[expect(clippy::needless_pass_by_value, reason = "`map_err` passes it by value")]
 pub(super) fn failure_text(failure: Failure) -> String {
-    failure.text().for_command()
+    failure.for_command()
 }
 
 pub(super) fn to_text(error: impl std::error::Error) -> String {
