@@ -5,11 +5,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use clap::ColorChoice;
 
-/// Marks the start of highlighted text: a Unicode noncharacter, which no text contains. The letter of the style follows.
-const BEGIN: char = '\u{fdd0}';
-
-/// Marks the end of highlighted text.
-const END: char = '\u{fdd1}';
+/// Marks the end of highlighted text. Like the marks of styles, it is a Unicode noncharacter, which no text contains.
+const END: char = '\u{fdd4}';
 
 /// The value of `--color`.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
@@ -62,13 +59,9 @@ pub(crate) enum Style {
 impl Style {
     const ALL: [Self; 4] = [Self::Strong, Self::Good, Self::Odd, Self::Bad];
 
-    fn letter(self) -> char {
-        match self {
-            Self::Strong => 's',
-            Self::Good => 'g',
-            Self::Odd => 'o',
-            Self::Bad => 'b',
-        }
+    /// Marks the start of text in this style.
+    fn mark(self) -> char {
+        ['\u{fdd0}', '\u{fdd1}', '\u{fdd2}', '\u{fdd3}'][self as usize]
     }
 
     fn sequence(self) -> &'static str {
@@ -100,7 +93,7 @@ impl Style {
     /// Marks a text as highlighted if standard output gets colours.
     pub(crate) fn on(self, text: &str) -> String {
         if of_stdout() && !text.is_empty() {
-            format!("{BEGIN}{}{text}{END}", self.letter())
+            format!("{}{text}{END}", self.mark())
         } else {
             text.to_owned()
         }
@@ -114,29 +107,19 @@ impl Style {
 
 /// Whether any part of a text is highlighted.
 pub(crate) fn is_highlighted(text: &str) -> bool {
-    text.contains(BEGIN)
+    text.contains(END)
 }
 
 /// Replaces the marks of [`Style::on`] with terminal codes; `shown` is applied to all text between marks.
 pub(crate) fn paint(text: &str, shown: impl Fn(&str) -> String) -> String {
-    let mut painted = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some((before, behind)) = rest.split_once(BEGIN) {
-        painted.push_str(&shown(before));
-        let mut characters = behind.chars();
-        let style = characters
-            .next()
-            .and_then(|letter| Style::ALL.into_iter().find(|style| style.letter() == letter));
-        let highlighted = style.and_then(|style| Some((style, characters.as_str().split_once(END)?)));
-        rest = match highlighted {
-            Some((style, (inside, behind))) => {
-                painted.push_str(&style.painted(&shown(inside)));
-                behind
-            }
-            None => behind,
-        };
-    }
-    painted + &shown(rest)
+    let pieces = text.split(END).map(|piece| {
+        let mut styles = Style::ALL.into_iter();
+        match styles.find_map(|style| Some((style, piece.split_once(style.mark())?))) {
+            Some((style, (before, inside))) => shown(before) + &style.painted(&shown(inside)),
+            None => shown(piece),
+        }
+    });
+    pieces.collect()
 }
 
 #[cfg(test)]
@@ -145,8 +128,8 @@ mod tests {
 
     #[test]
     fn highlighted_text_is_coloured_and_the_rest_is_escaped() {
-        let text = format!("a{BEGIN}sb{END}c{BEGIN}xd");
-        assert_eq!(paint(&text, str::to_uppercase), "A\u{1b}[1mB\u{1b}[0mCXD");
+        let text = format!("a{}b{END}c", Style::Strong.mark());
+        assert_eq!(paint(&text, str::to_uppercase), "A\u{1b}[1mB\u{1b}[0mC");
         assert_eq!(paint("plain", str::to_owned), "plain");
     }
 }
