@@ -5,7 +5,6 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::page::Page;
@@ -28,22 +27,16 @@ pub(super) struct Server {
     site: Arc<Site>,
 }
 
-/// The page with the secrets and limits of access to it.
+/// The page with the secrets of access to it. Each request that is being answered holds a reference to it.
 struct Site {
     page: Page,
     /// The secret with which every path begins.
     token: String,
     port: u16,
-    requests: AtomicUsize,
 }
 
-/// The answer to a request: a status, and a file if there is one.
-#[derive(Debug, PartialEq)]
-struct Answer<'a> {
-    status: &'static str,
-    file: Option<(&'a str, &'a [u8])>,
-    has_body: bool,
-}
+/// A file of the page: its name and its bytes.
+type File<'a> = (&'a str, &'a [u8]);
 
 impl Server {
     pub(super) fn new(listener: TcpListener, page: Page) -> std::io::Result<Self> {
@@ -52,7 +45,6 @@ impl Server {
             page,
             token: token(),
             port,
-            requests: AtomicUsize::new(0),
         };
         Ok(Self {
             listener,
@@ -70,14 +62,13 @@ impl Server {
             // It is not an error if the client aborts the connection before it is accepted.
             let Ok(stream) = stream else { continue };
             let site = Arc::clone(&self.site);
-            if site.requests.fetch_add(1, Ordering::SeqCst) >= MAX_REQUESTS {
-                site.requests.fetch_sub(1, Ordering::SeqCst);
+            // The server has a reference, too.
+            if Arc::strong_count(&site) > MAX_REQUESTS + 1 {
                 continue;
             }
             let work = move || {
                 // On an error the client has gone away, so there is nobody to report it to.
                 let _ = site.handle(stream);
-                site.requests.fetch_sub(1, Ordering::SeqCst);
             };
             std::thread::Builder::new().spawn(work).map_err(|error| {
                 Failure::input(format!("threads: could not start one ({error}); end other programs"))
@@ -93,36 +84,31 @@ impl Site {
         stream.set_write_timeout(Some(TIMEOUT))?;
         let head = head(&mut stream)?;
         let answer = self.answer(&head);
-        let (name, bytes) = answer.file.unwrap_or(("", b""));
+        let status = answer.err().unwrap_or("200 OK");
+        let (name, bytes) = answer.unwrap_or(("", b""));
         let headers = format!(
-            "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nContent-Security-Policy: {POLICY}\r\nX-Content-Type-Options: \
+            "HTTP/1.1 {status}\r\nContent-Type: {}\r\nContent-Length: {}\r\nContent-Security-Policy: {POLICY}\r\nX-Content-Type-Options: \
              nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\nCache-Control: \
              no-store\r\nConnection: close\r\n\r\n",
-            answer.status,
             media_type(name),
             bytes.len()
         );
         stream.write_all(headers.as_bytes())?;
-        if answer.has_body {
+        if !head.starts_with("HEAD ") {
             stream.write_all(bytes)?;
         }
         stream.flush()
     }
 
-    /// Answers a request.
-    fn answer(&self, head: &str) -> Answer<'_> {
-        let nothing = |status| Answer {
-            status,
-            file: None,
-            has_body: false,
-        };
+    /// The file that a request asks for, or else the status that refuses it.
+    fn answer(&self, head: &str) -> Result<File<'_>, &'static str> {
         let mut lines = head.split("\r\n");
         let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
         let [method, path, "HTTP/1.1" | "HTTP/1.0"] = words[..] else {
-            return nothing("400 Bad Request");
+            return Err("400 Bad Request");
         };
         if !["GET", "HEAD"].contains(&method) {
-            return nothing("405 Method Not Allowed");
+            return Err("405 Method Not Allowed");
         }
         // Refuse other names that resolve to this machine (DNS rebinding).
         let host = lines.find_map(|line| {
@@ -131,7 +117,7 @@ impl Site {
         });
         let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         if !host.is_some_and(|host| own.iter().any(|own| own == host)) {
-            return nothing("421 Misdirected Request");
+            return Err("421 Misdirected Request");
         }
         let path = path.split('?').next().unwrap_or_default();
         let name = path
@@ -139,14 +125,8 @@ impl Site {
             .and_then(|path| path.strip_prefix(self.token.as_str()))
             .and_then(|path| path.strip_prefix('/'));
         let name = name.map(|name| if name.is_empty() { "index.html" } else { name });
-        match name.and_then(|name| self.page.files().find(|(known, _)| *known == name)) {
-            Some(file) => Answer {
-                status: "200 OK",
-                file: Some(file),
-                has_body: method == "GET",
-            },
-            None => nothing("404 Not Found"),
-        }
+        let file = name.and_then(|name| self.page.files().find(|(known, _)| *known == name));
+        file.ok_or("404 Not Found")
     }
 }
 
@@ -192,7 +172,6 @@ mod tests {
             page,
             token: "secret".into(),
             port: 8008,
-            requests: AtomicUsize::new(0),
         }
     }
 
@@ -201,8 +180,7 @@ mod tests {
         let site = site();
         let check = |line: &str, host: &str, expected: &str| {
             let answer = site.answer(&format!("{line} HTTP/1.1\r\nAccept: */*\r\nhost: {host}\r\n\r\n"));
-            assert_eq!(answer.status, expected, "{line} {host}");
-            assert_eq!(answer.file.is_some(), expected == "200 OK");
+            assert_eq!(answer.err().unwrap_or("200 OK"), expected, "{line} {host}");
         };
         let own = "127.0.0.1:8008";
         check("GET /secret/", own, "200 OK");
@@ -226,8 +204,8 @@ mod tests {
         check("POST /secret/", own, "405 Method Not Allowed");
         check("GET", own, "400 Bad Request");
         assert_eq!(
-            site.answer("GET /secret/ HTTP/1.1\r\n\r\n").status,
-            "421 Misdirected Request"
+            site.answer("GET /secret/ HTTP/1.1\r\n\r\n"),
+            Err("421 Misdirected Request")
         );
     }
 
