@@ -41,45 +41,28 @@ pub struct OrderRequest {
     pub target_step: Option<f64>,
 }
 
-/// An order of variants by purpose.
+/// An order of variants by purpose, with its method; `None` for the shortest path, whose method depends on the number of items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DesignOrder {
-    /// Small steps: the shortest path from the first; of equally short ones, the one whose largest step is smallest.
-    Gradual,
-    /// By growing distance from the first: the most different ones come last.
-    Outward,
-    /// The longest path from the first: neighbours are as different as possible.
-    Abrupt,
-    /// The shortest path from the first: neighbours are as similar as possible.
-    Path,
-    /// Greedy: the next variant is always the farthest from all before it.
-    Farthest,
-    /// In the given order, whatever their distances.
-    Named,
-}
+pub struct DesignOrder(pub Option<Method>);
 
 impl DesignOrder {
+    /// In the given order, whatever the distances.
+    pub const NAMED: Self = Self(Some(Method::Given));
+
     /// The orders, each with its word.
     pub const WORDS: [(&'static str, Self); 6] = [
-        ("gradual", Self::Gradual),
-        ("outward", Self::Outward),
-        ("abrupt", Self::Abrupt),
-        ("path", Self::Path),
-        ("farthest", Self::Farthest),
-        ("named", Self::Named),
+        // Small steps: the shortest path from the first; of equally short ones, the one whose largest step is smallest.
+        ("gradual", Self(Some(Method::Gradual))),
+        // By growing distance from the first: the most different ones come last.
+        ("outward", Self(Some(Method::Outward))),
+        // The longest path from the first: neighbours are as different as possible.
+        ("abrupt", Self(Some(Method::Abrupt))),
+        // The shortest path from the first: neighbours are as similar as possible.
+        ("path", Self(None)),
+        // Greedy: the next variant is always the farthest from all before it.
+        ("farthest", Self(Some(Method::Farthest))),
+        ("named", Self::NAMED),
     ];
-
-    /// The method for this order; `None` for the shortest path, whose method depends on the number of items.
-    pub(crate) fn method(self) -> Option<Method> {
-        match self {
-            Self::Gradual => Some(Method::Gradual),
-            Self::Outward => Some(Method::Outward),
-            Self::Abrupt => Some(Method::Abrupt),
-            Self::Path => None,
-            Self::Farthest => Some(Method::Farthest),
-            Self::Named => Some(Method::Given),
-        }
-    }
 }
 
 /// Values of `--order`.
@@ -134,7 +117,7 @@ impl OrderRequest {
 
     /// The requested method, or else the method for the requested purpose, or else the default.
     fn method(&self, items: usize) -> Method {
-        let of_purpose = || self.purpose().and_then(DesignOrder::method);
+        let of_purpose = || self.purpose().and_then(|order| order.0);
         let method = self.own_method().or_else(of_purpose);
         method.unwrap_or_else(|| Method::default_for(items))
     }
@@ -169,23 +152,26 @@ impl OrderRequest {
         Ok((method, ordering))
     }
 
-    /// Like [`Self::order`], but if no start is given, starts at whichever of `starts` gives the shortest path.
+    /// Like [`Self::order`], but if no start is given, starts at whichever variant of the first of the `named` tasks gives the
+    /// shortest path. The matrix has the variants of the names in order, each once.
     pub(crate) fn order_from(
         &self,
         matrix: &DistanceMatrix,
         seed: u64,
-        starts: &[usize],
+        named: &[String],
     ) -> Result<(Method, Ordering), Failure> {
         let method = self.method(matrix.len());
-        if self.start.is_some() || !method.seeks_from_a_first() || starts.is_empty() || starts.len() == matrix.len() {
+        let of_first = named.first().and_then(|first| tasks::variants(first).ok());
+        let starts = of_first.map_or(0, |variants| variants.len());
+        if self.start.is_some() || !method.seeks_from_a_first() || starts == 0 || starts >= matrix.len() {
             return self.order(matrix, seed);
         }
         let last = self.options(matrix, seed)?.last;
         let mut best: Option<(Method, Ordering)> = None;
         // The requested last item cannot also be the first.
-        for first in starts.iter().filter(|first| Some(**first) != last) {
+        for first in (0..starts).filter(|first| Some(*first) != last) {
             let from = Self {
-                start: Some(matrix.labels()[*first].clone()),
+                start: Some(matrix.labels()[first].clone()),
                 ..self.clone()
             };
             let found = from.order(matrix, seed)?;
@@ -254,7 +240,10 @@ mod tests {
 
     #[test]
     fn one_word_names_an_order_by_purpose_or_method() {
-        assert_eq!("abrupt".parse(), Ok(OrderWord::Design(DesignOrder::Abrupt)));
+        assert_eq!(
+            "abrupt".parse(),
+            Ok(OrderWord::Design(DesignOrder(Some(Method::Abrupt))))
+        );
         assert_eq!("two-opt".parse(), Ok(OrderWord::Method(Method::TwoOpt)));
         for method in Method::ALL {
             assert!(method.name().parse::<OrderWord>().is_ok(), "{}", method.name());

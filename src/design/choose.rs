@@ -1,6 +1,6 @@
 //! Chooses the variants of a curriculum and their order: the named variants, those of a probe, or a sequence of steps.
 
-use driftworld_curriculum::{Choice, Design, Picked, Steps, arrange, distances, probe, probe_named, steps};
+use driftworld_curriculum::{Choice, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant, did_you_mean};
 
@@ -98,8 +98,8 @@ impl DesignRequest {
                 self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
                 match self.ordering.purpose() {
-                    Some(DesignOrder::Named) => (0..picked.len()).collect(),
-                    order => arrange(&matrix, order.map_or(Some(Method::Outward), DesignOrder::method), 0)?,
+                    Some(DesignOrder::NAMED) => (0..picked.len()).collect(),
+                    order => arrange(&matrix, order.map_or(Some(Method::Outward), |order| order.0), 0)?,
                 }
             };
             return chosen(Evidence::Probe { picked, element }, Some(element), order);
@@ -113,7 +113,7 @@ impl DesignRequest {
         };
         let matrix = labelled_matrix(&named, &sample, Ok)?;
         let order = match self.ordering.purpose() {
-            Some(DesignOrder::Named) => {
+            Some(DesignOrder::NAMED) => {
                 let all = 0..matrix.len();
                 let first = self.ordering.options(&matrix, self.seed)?.first;
                 first
@@ -123,14 +123,9 @@ impl DesignRequest {
             }
             Some(order) => {
                 let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);
-                arrange(&matrix, order.method(), first)?
+                arrange(&matrix, order.0, first)?
             }
-            None => {
-                self.ordering
-                    .order_from(&matrix, self.seed, &self.start_candidates(&named))?
-                    .1
-                    .indices
-            }
+            None => self.ordering.order_from(&matrix, self.seed, &self.tasks)?.1.indices,
         };
         let variants = named
             .iter()
@@ -149,12 +144,7 @@ impl DesignRequest {
     fn learned(&self) -> Result<Vec<(String, Variant)>, Failure> {
         let mut named = tasks::variants_of(&self.tasks)?;
         let held_out = self.held_out()?;
-        let is_held_out = |task: &str, variant: &Variant| {
-            held_out
-                .iter()
-                .any(|(other, held)| other == task && held.name() == variant.name())
-        };
-        named.retain(|(task, variant)| !is_held_out(task, variant));
+        named.retain(|(task, variant)| !is_among(&held_out, task, variant.name()));
         if named.is_empty() {
             return Err(Failure::input(format!(
                 "{}: found every variant held out, expected at least one to learn",
@@ -164,30 +154,10 @@ impl DesignRequest {
         Ok(named)
     }
 
-    /// The design, with the held-out variants.
-    pub(super) fn design_with_held_out(&self) -> Result<Design, Failure> {
-        let held_out = self.held_out()?;
-        let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
-        Ok(Design {
-            held_out: held_out.iter().map(choice).collect(),
-            ..self.design()
-        })
-    }
-
     /// Whether every argument names a variant or a family, not a whole task.
     fn names_variants(&self) -> bool {
         let named = tasks::with_tasks(&self.tasks);
         named.iter().all(|name| tasks::split(name).1.is_some())
-    }
-
-    /// The default candidates for the first variant: the variants of the first argument; none for a random order.
-    fn start_candidates(&self, named: &[(String, Variant)]) -> Vec<usize> {
-        let (Some(first), true) = (self.tasks.first(), self.ordering.own_method() != Some(Method::Random)) else {
-            return Vec::new();
-        };
-        let num_variants = tasks::variants(first).map_or(0, |variants| variants.len());
-        // Arguments are expanded in order, each variant once.
-        (0..num_variants.min(named.len())).collect()
     }
 
     /// The common task of all variants, as it was named; the variants; and the variant to start from.
@@ -228,6 +198,13 @@ impl DesignRequest {
         };
         Ok((task.clone(), pool, anchor))
     }
+}
+
+/// Whether one of the variants of tasks has this name.
+pub(super) fn is_among(variants: &[(String, Variant)], task: &str, name: &str) -> bool {
+    variants
+        .iter()
+        .any(|(other, variant)| other == task && variant.name() == name)
 }
 
 fn chosen(evidence: Evidence, element: Option<Element>, order: Vec<usize>) -> Result<Chosen, Failure> {

@@ -9,7 +9,9 @@ mod proof;
 mod request;
 mod words;
 
-use driftworld_curriculum::{Control, Design, control, design as lay_out, design_control, experts as single_task};
+use driftworld_curriculum::{
+    Control, Design, Tried, control, design as lay_out, design_control, experts as single_task,
+};
 use driftworld_report::picture;
 use driftworld_spec::{Scenario, ScenarioForm};
 use std::path::Path;
@@ -19,8 +21,8 @@ pub use optima::PairOptimum;
 pub use request::{DesignRequest, MAX_LIFETIMES, MAX_TRIED};
 pub use words::{Mix, element, schedule};
 
-use crate::{Failure, output_file};
-use drawable::Drawable;
+use crate::{Failure, output_file, tasks};
+use drawable::check_drawable;
 
 /// The result of a request.
 #[derive(Debug)]
@@ -85,8 +87,8 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     request.check()?;
     let chosen = request.choose()?;
     let proof = request.prove(&chosen)?;
-    let mut drawable = Drawable::new(request.worlds, &request.catalogue()?);
-    let (options, picked) = (&request.design_with_held_out()?, chosen.in_order(&chosen.order));
+    let classes = tasks::classes(&request.catalogue()?);
+    let (options, picked) = (&request.design()?, chosen.in_order(&chosen.order));
     let (mut scenarios, mut experts) = (Vec::new(), Vec::new());
     let lifetimes = match request.lifetimes {
         None => vec![options.clone()],
@@ -130,8 +132,9 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     for scenario in scenarios.iter_mut().chain(&mut controls).chain(&mut experts) {
         scenario.proof.clone_from(&proof);
     }
+    let mut tried = Tried::default();
     for scenario in scenarios.iter().chain(&controls).chain(&experts) {
-        drawable.check(scenario)?;
+        check_drawable(scenario, request.worlds, &classes, &mut tried)?;
         // Catch whatever the schema refuses, such as a name that no folder can have.
         Scenario::from_json("scenario", &scenario.to_json_pretty())?;
     }

@@ -2,6 +2,7 @@
 
 use driftworld_spec::ScenarioForm;
 
+use super::choose::is_among;
 use super::{Chosen, DesignRequest};
 use crate::{Failure, argument, tasks};
 
@@ -11,12 +12,7 @@ impl DesignRequest {
         let mut notes = Vec::new();
         for name in &self.tasks {
             let (task, variant) = tasks::split(name);
-            let is_held = variant.is_some_and(|variant| {
-                held_out
-                    .iter()
-                    .any(|(other, held)| other == task && held.name() == variant)
-            });
-            if is_held {
+            if variant.is_some_and(|variant| is_among(&held_out, task, variant)) {
                 notes.push(format!("{name} is named and held out: it is evaluated but not learned"));
             }
         }

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use driftworld_curriculum::{Design, Drifting, Evaluate, LEARN, Split};
+use driftworld_curriculum::{Choice, Design, Drifting, Evaluate, LEARN, Split};
 use driftworld_env::Catalogue;
 use driftworld_spec::{
     By, DriftSchedule, DriftSwitch, Element, Modality, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
+    Variant,
 };
 use serde::Deserialize;
 
@@ -222,15 +223,17 @@ impl DesignRequest {
         self.form() == Some(ScenarioForm::Expert) || self.lifetimes.is_some()
     }
 
-    /// The blocks, without the variants that are held out.
-    pub(super) fn design(&self) -> Design {
+    /// The blocks, and the variants that are held out.
+    pub(super) fn design(&self) -> Result<Design, Failure> {
+        let held_out = self.held_out()?;
+        let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
         let after = self.evaluate_after.clone().map(Evaluate::After);
         let switch = match self.mix {
             None => DriftSwitch::AtPoint,
             Some(Mix::Parameter) => DriftSwitch::Mixture,
             Some(Mix::Task) => DriftSwitch::Task,
         };
-        Design {
+        Ok(Design {
             name: self.name.clone(),
             learn: self.learn,
             evaluate: self.eval_episodes,
@@ -241,14 +244,14 @@ impl DesignRequest {
             fixed_evaluation: self.fixed_evaluation,
             split: self.split,
             paired_learning: self.paired_learning,
-            held_out: Vec::new(),
+            held_out: held_out.iter().map(choice).collect(),
             drifting: self.drift.map(|schedule| Drifting { schedule, switch }),
             pre_deployment: self.pre_deployment,
             task_label: self.task_label,
             complexity: self.complexity,
             difficulty: self.difficulty,
             seed: self.seed,
-        }
+        })
     }
 
     pub(super) fn catalogue(&self) -> Result<Catalogue, Failure> {
@@ -258,7 +261,7 @@ impl DesignRequest {
     /// Refuses contradictory options; [`design`](super::design) calls it first.
     ///
     /// # Errors
-    /// [`Failure::Usage`] if options contradict each other.
+    /// [`Failure`] if options contradict each other.
     pub fn check(&self) -> Result<(), Failure> {
         let given = [
             ("variants", self.variants.is_some()),

@@ -45,11 +45,19 @@ pub(super) fn refuse_existing(into: &[(Option<&PathBuf>, &Vec<Scenario>)]) -> Re
     found.map_or(Ok(()), |path| Err(overwrite::exists(&path, advice)))
 }
 
-/// Writes a scenario into a folder, in a file named after it.
-pub(super) fn write_into(folder: &Path, scenario: &Scenario) -> Result<PathBuf, Failure> {
-    let path = file_of(folder, scenario);
-    output::write(&path, scenario.to_json_pretty().as_bytes())?;
-    Ok(path)
+/// Writes scenarios into a folder, if there is one, each into a file named after it; reports each file with `what` it holds.
+pub(super) fn write_each(
+    folder: Option<&PathBuf>,
+    scenarios: &[Scenario],
+    what: impl Fn(&Scenario) -> String,
+) -> Result<(), Failure> {
+    let Some(folder) = folder else { return Ok(()) };
+    for scenario in scenarios {
+        let path = file_of(folder, scenario);
+        output::write(&path, scenario.to_json_pretty().as_bytes())?;
+        output::wrote(&path, what(scenario));
+    }
+    Ok(())
 }
 
 /// The file of a scenario in a folder.

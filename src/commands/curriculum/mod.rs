@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::output;
 use crate::{Failure, overwrite};
-use folders::write_into;
+use folders::write_each;
 use tables::blocks;
 pub(crate) use tables::choices;
 
@@ -138,13 +138,11 @@ impl Curriculum {
             output::note(format!("note: {note}"));
         }
         if request.is_of_several() {
-            for scenario in &designed.scenarios {
-                output::wrote(&write_into(&self.output, scenario)?, tables::learned(scenario));
-            }
+            write_each(Some(&self.output), &designed.scenarios, tables::learned)?;
         } else {
             self.write_one(&designed)?;
         }
-        self.write_experts(&designed)?;
+        write_each(self.experts.as_ref(), &designed.experts, tables::learned)?;
         if self.json && !to_stdout {
             return output::json(&described(&designed));
         }
@@ -164,18 +162,8 @@ impl Curriculum {
             designed.write_plot(path)?;
             output::wrote(path, "");
         }
-        let folder = self.controls.iter();
-        for (folder, scenario) in folder.flat_map(|folder| designed.controls.iter().map(move |one| (folder, one))) {
-            output::wrote(&write_into(folder, scenario)?, tables::path(scenario, matrix));
-        }
-        Ok(())
-    }
-
-    fn write_experts(&self, designed: &Designed) -> Result<(), Failure> {
-        let Some(folder) = &self.experts else { return Ok(()) };
-        for scenario in &designed.experts {
-            output::wrote(&write_into(folder, scenario)?, tables::learned(scenario));
-        }
-        Ok(())
+        write_each(self.controls.as_ref(), &designed.controls, |scenario| {
+            tables::path(scenario, matrix)
+        })
     }
 }

@@ -97,10 +97,7 @@ impl Order {
         if self.compare {
             return self.compare(&matrix);
         }
-        let (method, ordering) = self
-            .ordering
-            .labelled()
-            .order_from(&matrix, self.seed, &self.start_candidates())?;
+        let (method, ordering) = self.ordering.labelled().order_from(&matrix, self.seed, &self.tasks)?;
         if let Some(path) = &self.plot {
             output::write_and_report_picture(path, &path_map(&matrix, method, &ordering))?;
         }
@@ -153,12 +150,6 @@ impl Order {
             .by
             .unwrap_or_else(|| fitting(variants.iter().map(|(_, variant)| variant)));
         Ok((matrix, Some(by)))
-    }
-
-    /// The default candidates for the first variant: the variants of the first argument.
-    fn start_candidates(&self) -> Vec<usize> {
-        let first = self.tasks.first().and_then(|first| tasks::variants(first).ok());
-        (0..first.map_or(0, |variants| variants.len())).collect()
     }
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
