@@ -127,10 +127,10 @@ impl Contents {
 
 /// The error for a document of the wrong kind. Names the file, both kinds, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: found {found}, expected {expected}; {advice}", found = found.name())]
+#[error("{path}: found {found}, expected {expected}; {advice}")]
 pub struct OtherContents {
     path: String,
-    found: Contents,
+    found: &'static str,
     expected: String,
     advice: String,
 }
@@ -141,15 +141,10 @@ impl OtherContents {
         let found = found.filter(|found| !wanted.contains(found))?;
         Some(Self {
             path: path.shown().to_string(),
-            found,
+            found: found.name(),
             expected: Contents::either(wanted),
             advice: found.advice(wanted, path),
         })
-    }
-
-    /// The kind found.
-    pub fn found(&self) -> Contents {
-        self.found
     }
 }
 

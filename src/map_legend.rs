@@ -32,18 +32,7 @@ pub(crate) fn map_with_legend(world: &World, scene: &Scene, moves: &Moves, size:
 }
 
 /// One line of a legend.
-#[derive(Clone, Debug, PartialEq)]
-struct Entry {
-    mark: Mark,
-    name: String,
-}
-
-impl Entry {
-    fn new(mark: Mark, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { mark, name }
-    }
-}
+type Entry = (Mark, String);
 
 #[derive(Clone, Debug, PartialEq)]
 enum Mark {
@@ -59,14 +48,12 @@ enum Mark {
 /// The entries of a map's legend: objects by class, colour and reward, then walls, zones, ranges and paths.
 fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec<Entry> {
     let projection = MapProjection::of(scene, [ground.width, ground.height]);
-    let mut entries = vec![Entry {
-        mark: Mark::Arrow,
-        name: if moves.path.len() > 1 {
-            "agent".to_owned()
-        } else {
-            "agent, its start".to_owned()
-        },
-    }];
+    let agent = if moves.path.len() > 1 {
+        "agent"
+    } else {
+        "agent, its start"
+    };
+    let mut entries = vec![(Mark::Arrow, agent.to_owned())];
     entries.extend(object_entries(world, scene, ground, &projection));
     for (number, zone) in world
         .environment_params
@@ -78,9 +65,9 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         let color = zone.ground_color().to_f32().map(|c| (c * 255.0) as u8);
         let mut words = vec![zone.name.clone().unwrap_or_else(|| format!("zone {number}"))];
         words.extend(effects(zone));
-        let entry = Entry::new(Mark::Zone(color), words.join(", "));
-        if !entries.iter().any(|other| other.name == entry.name) {
-            entries.push(entry);
+        let name = words.join(", ");
+        if !entries.iter().any(|(_, other)| *other == name) {
+            entries.push((Mark::Zone(color), name));
         }
     }
     let reaches: Vec<f32> = (0..world.objects.len())
@@ -89,27 +76,23 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         .collect();
     if let Some(first) = reaches.first() {
         let same = reaches.iter().all(|reach| (reach - first).abs() < 0.05);
-        entries.push(Entry {
-            mark: Mark::Ring,
-            name: if same {
-                format!("sets off, {first:.1} m")
-            } else {
-                "sets off".to_owned()
-            },
-        });
+        entries.push((
+            Mark::Ring,
+            format!("sets off{}", when(same, || format!(", {first:.1} m"))),
+        ));
     }
     if !moves.trails.is_empty() {
-        entries.push(Entry::new(Mark::Trail, format!("moves in {} s", moves.seconds.round())));
+        entries.push((Mark::Trail, format!("moves in {} s", moves.seconds.round())));
     }
     if world
         .objects
         .iter()
         .any(|object| object.motion_model == MotionModel::Patrol)
     {
-        entries.push(Entry::new(Mark::Trail, "waypoints (dashed)"));
+        entries.push((Mark::Trail, "waypoints (dashed)".to_owned()));
     }
     if moves.path.len() > 1 {
-        entries.push(Entry::new(Mark::Path, "the agent's path"));
+        entries.push((Mark::Path, "the agent's path".to_owned()));
     }
     entries
 }
@@ -138,7 +121,7 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, projection: &M
         }
         let count = when(members.len() > 1, || format!(" ×{}", members.len()));
         let pay = when(pay != 0.0, || format!(", {}", signed(pay)));
-        Entry::new(Mark::Colors(seen), format!("{name}{count}{pay}"))
+        (Mark::Colors(seen), format!("{name}{count}{pay}"))
     };
     groups.into_iter().map(entry).collect()
 }
@@ -207,7 +190,7 @@ fn legend(entries: &[Entry], font_size: f32, height: u32, projection: &MapProjec
     let max_lines = (((height as f32 - foot - note_height - 6.0) / line).floor().max(1.0)) as usize;
     let mut shown: Vec<(Option<Mark>, String)> = entries
         .iter()
-        .map(|entry| (Some(entry.mark.clone()), entry.name.clone()))
+        .map(|(mark, name)| (Some(mark.clone()), name.clone()))
         .collect();
     if shown.len() > max_lines {
         // The agent needs no explanation.

@@ -133,7 +133,7 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
                 .map_or_else(String::new, |domain| domain_caption(&domain, parameter));
             [
                 name.clone(),
-                role(parameter.role).to_owned(),
+                <&str>::from(parameter.role).to_owned(),
                 affects.join(" "),
                 default_value(variants.first(), name, parameter),
                 domain,
@@ -192,14 +192,6 @@ fn value_caption(value: &Value, parameter: &Parameter) -> String {
         caption.push_str(word);
     }
     caption
-}
-
-fn role(role: Role) -> &'static str {
-    match role {
-        Role::Fixed => "fixed",
-        Role::Variant => "variant",
-        Role::Randomized => "randomized",
-    }
 }
 
 /// Maximum number of choices listed per parameter.

@@ -46,16 +46,10 @@ pub(super) struct Neighbours {
 /// A matrix with the indices of its variants by their log names.
 struct Named {
     matrix: DistanceMatrix,
-    index: BTreeMap<String, Ends>,
+    /// The indices of a block's first and last variants, which differ only if the block drifts.
+    index: BTreeMap<String, (usize, usize)>,
     /// Its source, as the end of a sentence.
     origin: String,
-}
-
-/// The indices of a block's first and last variants, which differ only if the block drifts.
-#[derive(Clone, Copy)]
-struct Ends {
-    first: usize,
-    last: usize,
 }
 
 /// A learning block: its name in the log, its regime, its variant and, if it drifts, its last variant.
@@ -71,7 +65,7 @@ impl Neighbours {
             let matrix = matrix_file::read("distances", path)?;
             let origin = format!("from {}", path.file_name().unwrap_or_default().to_string_lossy());
             let labels = matrix.labels().iter().enumerate();
-            let index = labels.map(|(at, label)| (log_name_of_label(label), Ends { first: at, last: at }));
+            let index = labels.map(|(at, label)| (log_name_of_label(label), (at, at)));
             Ok::<_, Failure>(Named {
                 index: index.collect(),
                 matrix,
@@ -181,7 +175,7 @@ impl Named {
     fn distances(&self, lifetime: &Lifetime) -> Distances {
         let distance = |[a, b]: [&str; 2]| {
             let of = |name: &str| self.index.get(name).copied();
-            Some(self.matrix.get(of(a)?.last, of(b)?.first))
+            Some(self.matrix.get(of(a)?.1, of(b)?.0))
         };
         let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(distance).collect();
         if distances.is_empty() {
@@ -194,7 +188,7 @@ impl Named {
             );
             return (None, why);
         }
-        let drifts = when(self.index.values().any(|end| end.first != end.last), || {
+        let drifts = when(self.index.values().any(|(first, last)| first != last), || {
             " The beginning of a drifting block is compared with the block before, its end with the block after."
                 .to_owned()
         });
@@ -304,7 +298,7 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     for (name, _, start, end) in learned(scenario, tasks)? {
         let first = index_of(start);
         let last = end.map_or(first, &mut index_of);
-        index.insert(name, Ends { first, last });
+        index.insert(name, (first, last));
         if first.max(last) >= MAX_MEASURED {
             return Err(format!(
                 "more than {MAX_MEASURED} variants were learned; measure them with driftworld order --matrix FILE and \

@@ -18,8 +18,9 @@ use crate::schema::document::DocumentSchema;
 use crate::value::{ParameterType, Value};
 
 /// What determines a parameter's value, and when.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Role {
     /// The task: one value in every variant.
     Fixed,

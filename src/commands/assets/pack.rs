@@ -68,8 +68,10 @@ const COLLIDERS: [&str; 6] = [
 impl Pack {
     #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let instead = ", or use a library that was packed elsewhere";
-        Err(super::super::optional::missing("gltf", "reading glTF", instead))
+        Err(Failure::input(
+            "reading glTF is not in this build: it lacks the feature `gltf`; build with `--features gltf` (or `full`), or use a \
+             library that was packed elsewhere",
+        ))
     }
 }
 

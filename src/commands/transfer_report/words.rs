@@ -1,7 +1,7 @@
 //! Writes the report as text, and the texts of its picture.
 
 use crate::curriculum::{DirectionReport, TransferReport};
-use crate::metrics::TransferMethod;
+use crate::metrics::{MAX_P_VALUE, TransferMethod};
 use crate::similarity::MantelTest;
 use driftworld_text::{counted, when};
 
@@ -120,9 +120,6 @@ fn conclusion(report: &TransferReport) -> String {
         .collect();
     answers.join("\n")
 }
-
-/// Largest p-value at which an effect counts as shown.
-const MAX_P_VALUE: f64 = 0.05;
 
 /// How to read the numbers, and their limits.
 fn notes(report: &TransferReport) -> Vec<String> {
