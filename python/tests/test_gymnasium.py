@@ -339,7 +339,7 @@ def test_unknown_values_are_refused_with_the_known_ones() -> None:
         bare("driftworld/Task-v0", task="find_object")
     with pytest.raises(SpecError, match="bywaypoint, whose actions are positions"):
         bare(FIND, variant="waypoints", actions="discrete")
-    with pytest.raises(ValueError, match="neither of task and world"):
+    with pytest.raises(ValueError, match="neither task nor world"):
         bare("driftworld/Task-v0")
 
 

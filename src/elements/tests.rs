@@ -47,7 +47,7 @@ fn true_claims_are_sound_and_unread_parameters_idle() {
             warnings[0].starts_with("t#rich: reach made no difference"),
             "{warnings:?}"
         );
-        // A declared effect is in vain if no variant with a different colour shows it.
+        // The task declares an effect in vain if no variant with a different colour shows it.
         let vain = "t: color declares S, which differed from red in none of the variants that change it (blue, rich): ";
         let vain = if affects.contains('S') { vec![vain] } else { Vec::new() };
         assert_eq!(warnings.len(), 1 + vain.len(), "{warnings:?}");

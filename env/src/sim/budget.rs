@@ -8,13 +8,13 @@
 /// Queries for the agent's path in one time step. When they are used up, the path ends.
 pub(super) const AGENTS: u64 = 4_000_000;
 
-/// Queries per time step for all objects that move by themselves: a shared amount, plus an amount for each. Objects for which
-/// too little is left wait.
+/// Queries per time step for all objects that move by themselves: a shared amount, plus an amount per object. An object for
+/// which too few queries are left stays where it is in this time step.
 pub(super) const MOVERS: u64 = 1_000_000;
 pub(super) const PER_MOVER: u64 = 100;
 
-/// Queries per time step for all objects that respawn: a shared amount, plus an amount for each. Objects for which nothing is
-/// left respawn in a later time step.
+/// Queries per time step for all objects that respawn: a shared amount, plus an amount per object. If the budget runs out before
+/// an object's turn, the object respawns in a later time step.
 pub(super) const RETURNS: u64 = 500_000;
 pub(super) const PER_RETURN: u64 = 20;
 
@@ -53,7 +53,7 @@ pub(super) struct SharedBudget {
 }
 
 impl SharedBudget {
-    /// `count` queries for `waiting` in the queue, in this time step.
+    /// A budget of `count` queries for this time step, shared by the `waiting` objects in the queue.
     pub(super) fn new(count: u64, waiting: usize, tick: u64) -> Self {
         /// A prime, so that every position gets its turn, and neighbours do not follow each other.
         const TURN: u64 = 7919;

@@ -112,9 +112,9 @@ class Home:
 
     def __init__(self, task: Any, world: Any, variant: Any) -> None:
         if (task is None) == (world is None):
-            found = "neither" if task is None else "both"
+            found = "neither task nor world" if task is None else "both task and world"
             raise ValueError(
-                f'environment: found {found} of task and world, expected one, as in task="my_task.json#variant"'
+                f'environment: found {found}, expected one of them, as in task="my_task.json#variant"'
             )
         self.task: _native.TaskSpec | None = None
         self.world: OneWorld | None = None
@@ -270,7 +270,7 @@ def spread_seeds(seed: int, num_envs: int) -> list[int]:
     + 1 share no world. The first seeds do not depend on ``num_envs``.
 
     Args:
-        seed: The common seed, a whole number from 0.
+        seed: The common seed, a whole number of at least 0.
         num_envs: Number of environments, from 1.
 
     Returns:
@@ -282,7 +282,7 @@ def spread_seeds(seed: int, num_envs: int) -> list[int]:
 
 
 def whole_number(found: Any, option: str = "seed") -> int:
-    """A whole number from 0.
+    """A whole number of at least 0.
 
     Raises:
         TypeError, ValueError: For anything else.
@@ -292,12 +292,12 @@ def whole_number(found: Any, option: str = "seed") -> int:
     except AttributeError:
         raise TypeError(f"{option}: found {found!r}, expected a whole number") from None
     if number < 0:
-        raise ValueError(f"{option}: found {number}, expected a whole number from 0")
+        raise ValueError(f"{option}: found {number}, expected a whole number of at least 0")
     return number
 
 
 def folded_seed(seed: Any) -> int:
-    """The seed used for worlds, from a Gymnasium seed, which may be any whole number from 0.
+    """The seed used for worlds, from a Gymnasium seed, any whole number of at least 0.
 
     A seed below 2⁶³ is used as it is. A larger one becomes the first 8 bytes of the SHA-256 of its hexadecimal digits
     (ASCII, lower case), read as a big-endian number, without the highest bit.

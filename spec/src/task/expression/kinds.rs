@@ -134,7 +134,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         match (index, &kind, numbers) {
             (None, Kind::List(word, _), _) => Err((
                 format!("{name} ({word})"),
-                format!("one number of it, such as {name}[0]"),
+                format!("one of its numbers, such as {name}[0]"),
             )),
             (None, _, _) => Ok(Some(kind)),
             (Some(_), _, Some(0)) => {
