@@ -1,11 +1,15 @@
 //! [`Action`]: an agent's action in one step, and its conversion to a motion of the body.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
+use serde::{Deserialize, Serialize};
 
 use crate::EnvError;
 
 /// An agent's action for one step. It is held for all time steps of the step; an interaction happens only in the first one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// In JSON, a list of three numbers or the number of a row.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Action {
     /// Three numbers: in the units of the world's action model, or in −1..1 if its actions are normalised.
     Continuous([f64; 3]),

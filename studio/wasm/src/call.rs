@@ -151,46 +151,20 @@ pub(crate) struct Link {
     pub(crate) request: WorldRequest,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) looks: Option<Style>,
-    pub(crate) actions: Vec<ActionJson>,
+    pub(crate) actions: Vec<Action>,
 }
 
 /// The input of a step.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum StepInput {
-    Action(ActionJson),
+    Action(Action),
     /// Input from keys, with `ahead` and `turn` in −1..=1.
     Keys {
         ahead: f64,
         turn: f64,
         interact: bool,
     },
-}
-
-/// An action in its JSON form.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-#[serde(untagged)]
-pub(crate) enum ActionJson {
-    Row(usize),
-    Numbers([f64; 3]),
-}
-
-impl From<Action> for ActionJson {
-    fn from(action: Action) -> Self {
-        match action {
-            Action::Discrete(row) => Self::Row(row),
-            Action::Continuous(numbers) => Self::Numbers(numbers),
-        }
-    }
-}
-
-impl From<ActionJson> for Action {
-    fn from(json: ActionJson) -> Self {
-        match json {
-            ActionJson::Row(row) => Self::Discrete(row),
-            ActionJson::Numbers(numbers) => Self::Continuous(numbers),
-        }
-    }
 }
 
 /// The agent that acts. A network is identified by the number that [`Call::Network`] returned.

@@ -8,7 +8,7 @@ use driftworld::modality;
 use driftworld::spec::{ActionModel, ActionSpace, Modality, World};
 use serde_json::{Value, json};
 
-use crate::call::{ActionJson, AgentName, StepInput, View};
+use crate::call::{AgentName, StepInput, View};
 use crate::fault::Fault;
 
 /// Number of steps between snapshots.
@@ -73,8 +73,8 @@ impl Episode {
         }
     }
 
-    pub(crate) fn actions(&self) -> Vec<ActionJson> {
-        self.actions.iter().copied().map(ActionJson::from).collect()
+    pub(crate) fn actions(&self) -> &[Action] {
+        &self.actions
     }
 
     pub(crate) fn ended(&self) -> bool {
@@ -84,7 +84,7 @@ impl Episode {
     /// Takes a step from the current position, and drops the actions after it.
     pub(crate) fn step(&mut self, command: StepInput) -> Result<(), Fault> {
         let action = match command {
-            StepInput::Action(action) => action.into(),
+            StepInput::Action(action) => action,
             StepInput::Keys { ahead, turn, interact } => {
                 let agent = &self.environment.world().agent_params;
                 let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
@@ -160,7 +160,7 @@ impl Episode {
         let mut now = json!(self.step);
         let state = json!({
             "step": self.position,
-            "action": self.position.checked_sub(1).map(|last| ActionJson::from(self.actions[last])),
+            "action": self.position.checked_sub(1).map(|last| self.actions[last]),
             "total": self.environment.episode_return(),
             "seconds": self.environment.seconds(),
             "energy": self.environment.energy(),

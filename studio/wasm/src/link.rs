@@ -15,7 +15,7 @@ use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use serde::{Deserialize, Serialize};
 
-use crate::call::{ActionJson, AgentName, Link};
+use crate::call::{AgentName, Link};
 use crate::episode::agent;
 use crate::fault::Fault;
 use crate::request::{TaskCache, WorldRequest, in_style};
@@ -51,7 +51,7 @@ struct Header {
     total: String,
     /// The actions that steps refer to by index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    listed: Vec<ActionJson>,
+    listed: Vec<Action>,
 }
 
 /// The agents that can continue at the current step, by index into [`AGENTS`].
@@ -95,8 +95,7 @@ pub(crate) fn encode(tasks: &mut TaskCache, link: Link) -> Result<String, Fault>
     let hash = short_hash(&world.hash());
     let mut environment = Environment::new(in_style(world, link.looks)?);
     let (mut agents, mut listed, mut numbers) = (AgentStates::default(), Vec::<Action>::new(), Vec::new());
-    for taken in &link.actions {
-        let action = Action::from(*taken);
+    for action in link.actions {
         // For a discrete action, an index is as short as an agent's number, and faster to decode.
         let number = match action {
             Action::Discrete(_) => None,
@@ -120,7 +119,7 @@ pub(crate) fn encode(tasks: &mut TaskCache, link: Link) -> Result<String, Fault>
         steps,
         hash,
         total: bits(environment.episode_return()),
-        listed: listed.into_iter().map(ActionJson::from).collect(),
+        listed,
     };
     let mut data = serde_json::to_vec(&header).expect("keys are strings, and numbers were checked by steps");
     data.push(b'\n');
@@ -183,13 +182,13 @@ pub(crate) fn decode(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Faul
         } else {
             agents = AgentStates::default();
             let listed = header.listed.get((number - LISTED) as usize);
-            listed.copied().map(Action::from)
+            listed.copied()
         };
         let action = action.ok_or_else(damaged)?;
         if environment.ended() || environment.step(action).is_err() {
             return Err(other_version("steps that are impossible here in an episode"));
         }
-        actions.push(ActionJson::from(action));
+        actions.push(action);
     }
     if !numbers.is_empty() {
         return Err(damaged());

@@ -88,9 +88,7 @@ impl Session {
             }
             Call::Choose { episode, agent } => {
                 let (episodes, networks) = (&mut self.episodes, &self.networks);
-                json!(crate::call::ActionJson::from(
-                    open(episodes, episode)?.choose(agent, networks)?
-                ))
+                json!(open(episodes, episode)?.choose(agent, networks)?)
             }
             Call::Act { episode, agent } => {
                 let episode = open(&mut self.episodes, episode)?;
