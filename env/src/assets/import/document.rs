@@ -1,12 +1,12 @@
 //! Parses the JSON of a glTF file. Checks its extent before parsing, and its version and extensions afterwards. Indices are
 //! checked later, where they are used.
 
-use std::fmt;
+use std::collections::BTreeMap;
 
 use driftworld_text::{first_of, shortened};
 use gltf_json::Root;
 use serde::Deserialize;
-use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
+use serde::de::IgnoredAny;
 
 use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
 use super::refusal::{at_most, quoted, refuse};
@@ -70,7 +70,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is not glTF 2.0 is version 1, in which `meshes` is an object instead of a list. Stores no parsed values.
+/// Whether JSON that is not glTF 2.0 is version 1, in which `meshes` is an object instead of a list.
 fn is_version_1(json: &str) -> bool {
     gltf_json::deserialize::from_str::<Version1>(json).is_ok()
 }
@@ -78,29 +78,7 @@ fn is_version_1(json: &str) -> bool {
 #[derive(Deserialize)]
 struct Version1 {
     #[serde(rename = "meshes")]
-    _meshes: AnyObject,
-}
-
-/// Any JSON object.
-struct AnyObject;
-
-impl<'de> Deserialize<'de> for AnyObject {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(Self)
-    }
-}
-
-impl<'de> Visitor<'de> for AnyObject {
-    type Value = Self;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("an object")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self, A::Error> {
-        while map.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
-        Ok(self)
-    }
+    _meshes: BTreeMap<String, IgnoredAny>,
 }
 
 fn is_compression(extension: &str) -> bool {
