@@ -189,7 +189,8 @@ impl CollisionWorld {
         ] {
             let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height())
                 .translation(Vector::new(at[0], at[1], 0.0));
-            self.insert(wall, WALL, Outline::rectangle(half), 0.0);
+            let outline = Outline::of_whole(Footprint::rectangle(half.map(f64::from)));
+            self.insert(wall, WALL, outline, 0.0);
         }
     }
 
@@ -210,7 +211,8 @@ impl CollisionWorld {
                 let half = [length / 2.0, 0.02];
                 let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height());
                 let wall = wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle)));
-                self.insert(wall, WALL, Outline::wall(half[0], half[1]), -angle.to_degrees());
+                let outline = Outline::of_whole(Footprint::line(f64::from(half[0]), f64::from(half[1])));
+                self.insert(wall, WALL, outline, -angle.to_degrees());
             }
         }
     }

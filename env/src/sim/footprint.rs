@@ -33,14 +33,6 @@ impl Footprint {
         }
     }
 
-    /// An empty footprint, with capacity for the corners of two rectangles.
-    pub(super) fn with_capacity() -> Self {
-        Self {
-            corners: SmallVec::with_capacity(8),
-            rounding: 0.0,
-        }
-    }
-
     /// A segment along x around the origin with this half length, widened by a radius. Its ends are round, so that two walls
     /// meet in a corner without a notch.
     pub(super) fn line(half_length: f64, radius: f64) -> Self {

@@ -1,6 +1,7 @@
 //! Moves the bodies of objects that move by themselves, and checks positions for respawning.
 
 use rapier3d::prelude::*;
+use smallvec::SmallVec;
 
 use super::budget::Budget;
 use super::collision_world::{CollisionWorld, EDGE, slot};
@@ -28,7 +29,7 @@ impl CollisionWorld {
         let handle = if let Some(handle) = self.agent_handle {
             handle
         } else {
-            let outline = Outline::disc(self.radius as f32);
+            let outline = Outline::of_whole(Footprint::disc([0.0; 2], self.radius));
             self.insert(ColliderBuilder::new(self.agent.clone()), AGENT, outline, 0.0)
         };
         self.agent_handle = Some(handle);
@@ -88,7 +89,10 @@ impl CollisionWorld {
             scratch.indices.extend(0..count as u32);
             // Enough capacity for most paths, so that steps do not allocate.
             while scratch.widened.len() < count.max(16) {
-                scratch.widened.push(Footprint::with_capacity());
+                scratch.widened.push(Footprint {
+                    corners: SmallVec::with_capacity(8),
+                    rounding: 0.0,
+                });
             }
             self.widen(&scratch.numbers, &body, &mut scratch.widened);
             let mut start_of_slide = from;

@@ -15,27 +15,9 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    pub(super) fn disc(radius: f32) -> Self {
-        Self {
-            low: None,
-            whole: Footprint::disc([0.0; 2], f64::from(radius)),
-        }
-    }
-
-    /// A thin wall with round ends and this half length along x.
-    pub(super) fn wall(half_length: f32, half_thickness: f32) -> Self {
-        Self {
-            low: None,
-            whole: Footprint::line(f64::from(half_length), f64::from(half_thickness)),
-        }
-    }
-
-    /// A rectangle with these half sides.
-    pub(super) fn rectangle(half: [f32; 2]) -> Self {
-        Self {
-            low: None,
-            whole: Footprint::rectangle(half.map(f64::from)),
-        }
+    /// The outline of a body that is equally wide at every height.
+    pub(super) fn of_whole(whole: Footprint) -> Self {
+        Self { low: None, whole }
     }
 
     /// The outline of an asset's body at a scale, for an agent of this height in metres.
@@ -43,11 +25,8 @@ impl Outline {
         let scaled = |metres: f32| f64::from((metres * scale).max(0.005));
         let agent_height = f64::from(agent_height);
         match shape {
-            ColliderShape::Box { half: [x, y, _] } => Self {
-                low: None,
-                whole: Footprint::rectangle([scaled(*x), scaled(*y)]),
-            },
-            ColliderShape::Cylinder { radius, .. } => Self::disc(scaled(*radius) as f32),
+            ColliderShape::Box { half: [x, y, _] } => Self::of_whole(Footprint::rectangle([scaled(*x), scaled(*y)])),
+            ColliderShape::Cylinder { radius, .. } => Self::of_whole(Footprint::disc([0.0; 2], scaled(*radius))),
             // Both have a hemisphere at the bottom, which a low agent touches below its centre.
             ColliderShape::Ball { radius } | ColliderShape::Capsule { radius, .. } => {
                 let radius = scaled(*radius);
@@ -64,7 +43,7 @@ impl Outline {
                     .map(|point| point.map(|metres| f64::from(metres * scale)))
                     .collect();
                 let Some(whole) = Footprint::around(corners.iter().map(|&[x, y, _]| [x, y]).collect()) else {
-                    return Self::disc(scaled(shape.radius()) as f32);
+                    return Self::of_whole(Footprint::disc([0.0; 2], scaled(shape.radius())));
                 };
                 let is_taller = corners.iter().any(|corner| corner[2] > agent_height);
                 let low = is_taller.then(|| Footprint::around(points_below(&corners, agent_height)));

@@ -1,20 +1,10 @@
-//! Rewards by the world's rules: per step, per second, and by the shaping's potential. `step.rs` adds them to the rewards of
-//! objects (`interactions.rs`) and zones (`zones.rs`).
+//! Rewards by the shaping's potential. `step.rs` adds them to those per step and per second, and to the rewards of objects
+//! (`interactions.rs`) and zones (`zones.rs`).
 
 use driftworld_spec::World;
 
 use super::state::SimState;
 use super::termination::pays_now;
-
-/// The reward per step.
-pub(super) fn per_step(world: &World) -> f64 {
-    world.rules.step_reward
-}
-
-/// The reward per second, for one time step.
-pub(super) fn per_tick(world: &World) -> f64 {
-    world.rules.reward_per_second * world.agent_params.time_step
-}
 
 /// The shaping reward of a step, from the potentials before and after it; the end of an episode has potential 0.
 pub(super) fn shaping(world: &World, state: &SimState, before: f64, terminated: bool) -> Option<f64> {

@@ -42,8 +42,8 @@ impl Environment {
     pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
         let potential_before = reward::potential(&self.world, &self.state);
-        step.reward = reward::per_step(&self.world);
-        let pay = reward::per_tick(&self.world);
+        step.reward = self.world.rules.step_reward;
+        let pay = self.world.rules.reward_per_second * self.world.agent_params.time_step;
         let max_ticks = self.world.max_ticks().unwrap_or(u64::MAX);
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
             step.reward += pay;
