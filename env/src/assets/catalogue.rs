@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use driftworld_spec::{Classes, Model, Models, Style};
 
 use super::library::{Library, LibraryModel, key};
-use super::{Asset, Lettering, asset_in, builtin, sign};
+use super::{Asset, asset_in, builtin, needs_light_letters, sign};
 
 /// The number in class segmentation shared by all classes that are not in the catalogue; they are drawn as placeholders.
 pub const UNKNOWN_CLASS: u16 = 31;
@@ -129,7 +129,7 @@ impl Catalogue {
         let is_built_in =
             class == "sign" && (self.models.is_empty() || !self.models.contains_key(&key(class, &model.0)));
         match builtin::number(class, model).filter(|_| is_built_in) {
-            Some(number) => sign(number, text, color.map(Lettering::on).unwrap_or_default()),
+            Some(number) => sign(number, text, color.is_some_and(needs_light_letters)),
             None => self.asset(class, model),
         }
     }

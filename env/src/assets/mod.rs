@@ -31,7 +31,7 @@ pub use library::{
     MAX_MODEL_VERTICES, MAX_NAME_BYTES,
 };
 pub use mesh::Mesh;
-pub(crate) use signs::Lettering;
+pub(crate) use signs::needs_light_letters;
 
 /// The built-in asset of a class and model, built once and shared. Unknown ones get a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
@@ -56,13 +56,13 @@ pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
     }
 }
 
-/// The built-in sign number `model` with text, built on first use and cached.
-pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
-    type Cache = HashMap<(u32, String, Lettering), Arc<Asset>>;
+/// The built-in sign number `model` with text in light or dark letters, built on first use and cached.
+pub(crate) fn sign(model: u32, text: &str, is_light: bool) -> Arc<Asset> {
+    type Cache = HashMap<(u32, String, bool), Arc<Asset>>;
     static CACHE: LazyLock<Mutex<Cache>> = LazyLock::new(Mutex::default);
     // The cache stays valid after a panic: only finished assets are inserted.
     let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
-    let key = (model, text.to_owned(), lettering);
+    let key = (model, text.to_owned(), is_light);
     if let Some(asset) = cache.get(&key) {
         return Arc::clone(asset);
     }
@@ -71,7 +71,7 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
         cache.clear();
     }
     let bare = builtin::asset(Style::Plain, "sign", model).unwrap_or_else(builtin::placeholder);
-    let asset = Arc::new(signs::sign(&bare, model, text, lettering));
+    let asset = Arc::new(signs::sign(&bare, model, text, is_light));
     cache.insert(key, Arc::clone(&asset));
     asset
 }

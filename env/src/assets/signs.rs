@@ -18,31 +18,15 @@ const MIN_SQUARE_PIXELS: f32 = 1.6;
 const THICKNESS: f32 = 0.05;
 const GAP: f32 = 0.01;
 
-/// Colour of letters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Lettering {
-    /// For light boards; the default.
-    #[default]
-    Dark,
-    /// For dark boards.
-    Light,
+/// Whether light letters are readable on a colour (sRGB), and dark ones are not.
+pub(crate) fn needs_light_letters([r, g, b]: [f32; 3]) -> bool {
+    // Luma weights. In sRGB, perceived middle grey is slightly below one half.
+    0.30 * r + 0.59 * g + 0.11 * b < 0.45
 }
 
-impl Lettering {
-    /// The lettering that is readable on a colour (sRGB).
-    pub(crate) fn on([r, g, b]: [f32; 3]) -> Self {
-        // Luma weights. In sRGB, perceived middle grey is slightly below one half.
-        if 0.30 * r + 0.59 * g + 0.11 * b < 0.45 {
-            Self::Light
-        } else {
-            Self::Dark
-        }
-    }
-}
-
-/// The sign number `model` with text on its front. Letters with squares smaller than [`MIN_SQUARE_PIXELS`] are not drawn,
-/// because they would flicker and be misread.
-pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -> Asset {
+/// The sign number `model` with text on its front, in light or dark letters. Letters with squares smaller than
+/// [`MIN_SQUARE_PIXELS`] are not drawn, because they would flicker and be misread.
+pub(crate) fn sign(bare: &Asset, model: u32, text: &str, is_light: bool) -> Asset {
     if text.trim().is_empty() {
         return bare.clone();
     }
@@ -51,10 +35,7 @@ pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -
     let [columns, rows] = CHARACTER_SIZE.map(|count| count as f32);
     let square = (wide / ((columns + 1.0) * count as f32 + 1.0)).min(high / (rows + 2.0));
     let letters = text_mesh(text, square, THICKNESS / 2.0 + GAP, CENTRE);
-    let color = match lettering {
-        Lettering::Dark => DARK,
-        Lettering::Light => LIGHT,
-    };
+    let color = if is_light { LIGHT } else { DARK };
     let mut all = bare.parts.clone();
     all.push(Part::new(letters, Paint::Fixed(color)));
     // The allowed error is half a pixel, which is this many metres if a square is `MIN_SQUARE_PIXELS` wide.
