@@ -53,13 +53,13 @@ pub use recording::{
     Edit, EpisodeOrigin, MAX_RECORDED_STEPS, MAX_RECORDING_LINE, RECORDING_FORMAT, RecordedEpisode, Recorder,
     Recording, RecordingLines, RecordingMark, RecordingReader, Replay,
 };
+#[cfg(feature = "gpu")]
+pub use render::GpuRenderer;
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
     CATEGORY_SKY, CpuRenderer, DepthForm, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport,
     Target, category_color, depth_to_gray, top_down, top_down_scale, top_down_with_way,
 };
-#[cfg(feature = "gpu")]
-pub use render::{GpuChoice, GpuRenderer};
 pub use scene::{Item, Light, Scene, WallPanel};
 pub use sim::{
     Action, AgentState, Effect, EndedBy, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning,

@@ -1,7 +1,7 @@
 //! Renders batches of images on the machine's first adapter, which may be software, and on the CPU.
 
 use criterion::{Criterion, Throughput, criterion_group};
-use driftworld_env::{Action, Camera, CpuRenderer, Environment, GpuChoice, GpuRenderer, Picture, Target};
+use driftworld_env::{Action, Camera, CpuRenderer, Environment, GpuRenderer, Picture, Target};
 use driftworld_spec::World;
 
 const SIZE: u32 = 84;
@@ -23,7 +23,7 @@ fn circle() -> (Environment, Vec<Camera>) {
 
 /// One batch of images per run: colour only, or with depth and classes.
 fn batches(c: &mut Criterion) {
-    let mut gpu = GpuRenderer::new(GpuChoice::Any).expect("there is an adapter");
+    let mut gpu = GpuRenderer::new(true).expect("there is an adapter");
     let (environment, cameras) = circle();
     for (modalities, depths) in [("colour", 0), ("colour, depth, classes", PIXELS)] {
         for count in [64, 256] {

@@ -43,7 +43,7 @@ pub use frame::{
     Frame, category_color,
 };
 #[cfg(feature = "gpu")]
-pub use gpu::{GpuChoice, GpuRenderer};
+pub use gpu::GpuRenderer;
 pub use kind::RendererKind;
 pub use picture::Picture;
 pub use renderer::Renderer;

@@ -3,7 +3,7 @@
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
 #[cfg(feature = "gpu")]
-use super::gpu::{GpuChoice, GpuRenderer};
+use super::gpu::GpuRenderer;
 use super::kind::RendererKind;
 use super::picture::Picture;
 #[cfg(not(feature = "gpu"))]
@@ -46,12 +46,7 @@ impl Renderer {
     /// A renderer on a GPU; with `or_software`, falls back to software emulation of one.
     #[cfg(feature = "gpu")]
     fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
-        let choice = if or_software {
-            GpuChoice::Any
-        } else {
-            GpuChoice::Hardware
-        };
-        Ok(Self(Inner::Gpu(Box::new(GpuRenderer::new(choice)?))))
+        Ok(Self(Inner::Gpu(Box::new(GpuRenderer::new(or_software)?))))
     }
 
     #[cfg(not(feature = "gpu"))]

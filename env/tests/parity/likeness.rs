@@ -3,11 +3,11 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use driftworld_env::{Frame, GpuChoice, GpuRenderer};
+use driftworld_env::{Frame, GpuRenderer};
 
 /// A renderer on this machine's adapter, if there is one.
 pub(crate) fn gpu() -> Option<GpuRenderer> {
-    match GpuRenderer::new(GpuChoice::Any) {
+    match GpuRenderer::new(true) {
         Ok(renderer) => Some(renderer),
         Err(error)
             if std::env::var_os("DRIFTWORLD_REQUIRE_GPU").is_some_and(|value| value != "0" && !value.is_empty()) =>

@@ -2,17 +2,7 @@
 
 use crate::EnvError;
 
-use super::device::{Clipping, Device};
-
-/// The adapters that a renderer may use.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GpuChoice {
-    /// Any: GPUs first, and software emulation, such as Mesa's llvmpipe, last.
-    #[default]
-    Any,
-    /// Only GPUs.
-    Hardware,
-}
+use super::device::Device;
 
 /// All adapters of this machine, best first; if there are none, the error from the graphics APIs.
 pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
@@ -45,19 +35,19 @@ fn shortened(message: &str) -> String {
     format!("{}: {}", what.to_lowercase(), why.join(", "))
 }
 
-/// Opens the first adapter for which `test` succeeds.
+/// Opens the first adapter for which `test` succeeds; software emulation of a GPU comes last, and only if it is wanted.
 ///
 /// # Errors
 /// [`EnvError::NoGpu`], with the adapters that were tried, if none works.
-pub(super) fn open_first<T>(choice: GpuChoice, test: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
+pub(super) fn open_first<T>(or_software: bool, test: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
     let adapters = all().map_err(|reason| EnvError::NoGpu { tried: vec![reason] })?;
     let mut tried = Vec::new();
     for adapter in adapters {
         let info = adapter.get_info();
-        let outcome = if choice == GpuChoice::Hardware && is_software(&info) {
+        let outcome = if !or_software && is_software(&info) {
             Err("is software".to_owned())
         } else {
-            Device::open(&adapter, Clipping::IfPossible)
+            Device::open(&adapter, wgpu::Features::CLIP_DISTANCES)
                 .and_then(|device| test(device).map_err(|error| error.to_string()))
         };
         match outcome {

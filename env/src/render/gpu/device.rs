@@ -44,14 +44,9 @@ impl ErrorLog {
 }
 
 impl Device {
-    /// Opens an adapter with its full limits; with `clipping`, triangles are clipped at their tile's edges if supported.
-    pub(super) fn open(adapter: &wgpu::Adapter, clipping: Clipping) -> Result<Self, String> {
-        let clip = wgpu::Features::CLIP_DISTANCES;
-        let features = match clipping {
-            Clipping::IfPossible => adapter.features() & clip,
-            #[cfg(test)]
-            Clipping::Never => wgpu::Features::empty(),
-        };
+    /// Opens an adapter with its full limits, and with those of the wanted features that it supports.
+    pub(super) fn open(adapter: &wgpu::Adapter, wanted: wgpu::Features) -> Result<Self, String> {
+        let features = adapter.features() & wanted;
         let limits = adapter.limits();
         let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("driftworld"),
@@ -70,7 +65,7 @@ impl Device {
             queue,
             info: adapter.get_info(),
             limits,
-            has_clip_distances: features.contains(clip),
+            has_clip_distances: features.contains(wgpu::Features::CLIP_DISTANCES),
             errors,
         })
     }
@@ -94,15 +89,6 @@ impl Device {
         let adapter = self.info.name.clone();
         EnvError::Gpu { adapter, reason }
     }
-}
-
-/// Whether to clip triangles at the edges of their tile.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Clipping {
-    IfPossible,
-    /// As on an adapter without support for clipping; for tests.
-    #[cfg(test)]
-    Never,
 }
 
 /// An error as one line.

@@ -45,7 +45,7 @@ pub(super) struct TileContents {
 impl TileContents {
     /// Collects everything in a scene that a camera sees in an image of this size. [`TileContents::place`] sets the tile's
     /// position later.
-    pub(super) fn gather(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2], labels: Labels) {
+    pub(super) fn gather(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2], with_class: bool) {
         let view = View::new(camera, size[0] as usize, size[1] as usize);
         let shader = Shader::new(&scene.light);
         let walls = Walls::around(scene, &view, &shader);
@@ -57,7 +57,7 @@ impl TileContents {
         for &visible in &all_visible {
             match visible.drawable {
                 Drawable::Item(index) => {
-                    self.add_item(&scene.items[index as usize], index, visible, &view, scene, labels);
+                    self.add_item(&scene.items[index as usize], index, visible, &view, scene, with_class);
                 }
                 Drawable::Panels(index) => self.add_panels(&scene.panels[index as usize], &view, scene),
             }
@@ -74,11 +74,12 @@ impl TileContents {
         }
     }
 
-    fn add_item(&mut self, item: &Item, index: u32, visible: Visible, view: &View, scene: &Scene, labels: Labels) {
+    fn add_item(&mut self, item: &Item, index: u32, visible: Visible, view: &View, scene: &Scene, with_class: bool) {
         let at = view.placement(&Pose::of(item), scene.light.direction);
-        let class = match labels {
-            Labels::WithClass => u32::from(item.class_id) << CATEGORY_BITS,
-            Labels::CategoryOnly => 0,
+        let class = if with_class {
+            u32::from(item.class_id) << CATEGORY_BITS
+        } else {
+            0
         };
         let label = (class | u32::from(category(item))) << 24;
         let color = item.color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
@@ -101,15 +102,6 @@ impl TileContents {
             self.shapes.push(Shape::Triangle);
         }
     }
-}
-
-/// Contents of the highest byte of a pixel's word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Labels {
-    /// Only the category; the class follows from the item.
-    CategoryOnly,
-    /// Class and category.
-    WithClass,
 }
 
 /// The lanes of a block that contain a triangle.

@@ -16,12 +16,11 @@ mod unpack;
 
 use rayon::prelude::*;
 
-pub use adapter::GpuChoice;
 pub(super) use survey::survey;
 
 use self::atlas::{Grid, Planes};
 use self::device::Device;
-use self::instances::{Labels, TileContents};
+use self::instances::TileContents;
 use self::pass::{Pass, Stage, pass_limits};
 use super::compose::CATEGORY_BITS;
 use super::cpu::{CpuRenderer, average};
@@ -51,18 +50,20 @@ struct Job {
     picture: usize,
     size: [u32; 2],
     planes: Planes,
-    labels: Labels,
+    /// Whether the highest byte of a pixel's word has its class beside its category; otherwise the class follows from the item.
+    with_class: bool,
     /// Samples per pixel along each side.
     samples: u32,
 }
 
 impl GpuRenderer {
-    /// A renderer on the first adapter that renders a small test image.
+    /// A renderer on the first adapter that renders a small test image: a GPU, or with `or_software`, if none works, software
+    /// emulation of one, such as Mesa's llvmpipe.
     ///
     /// # Errors
     /// [`EnvError::NoGpu`], with the adapters that were tried and why each failed, if none works.
-    pub fn new(choice: GpuChoice) -> Result<Self, EnvError> {
-        adapter::open_first(choice, Self::tested)
+    pub fn new(or_software: bool) -> Result<Self, EnvError> {
+        adapter::open_first(or_software, Self::tested)
     }
 
     /// A renderer on this device, if it renders a small test image.
@@ -185,7 +186,7 @@ impl GpuRenderer {
         let together = contents[..jobs.len()].par_iter_mut().zip(jobs).with_min_len(8);
         together.for_each(|(content, job)| {
             let picture = &seen[job.picture];
-            content.gather(picture.scene, &picture.camera, job.size, job.labels);
+            content.gather(picture.scene, &picture.camera, job.size, job.with_class);
         });
         let count: usize = contents[..jobs.len()]
             .iter()
@@ -239,11 +240,11 @@ impl GpuRenderer {
                 .for_each(|((number, job), picture)| {
                     let (scene, target, corner) = (picture.scene, &mut picture.target, grid.corner(number));
                     if job.samples == 1 {
-                        unpack::unpack(bytes, layout, corner, scene, job.labels, target);
+                        unpack::unpack(bytes, layout, corner, scene, job.with_class, target);
                     } else if let Some(rgb) = &mut target.rgb {
                         let mut points = vec![0; 3 * job.size[0] as usize * job.size[1] as usize];
                         let mut fine = Target::of_colors([job.size[0], job.size[1]], &mut points);
-                        unpack::unpack(bytes, layout, corner, scene, job.labels, &mut fine);
+                        unpack::unpack(bytes, layout, corner, scene, job.with_class, &mut fine);
                         average(&points, rgb, target.width as usize, job.samples as usize);
                     }
                 });
@@ -255,7 +256,6 @@ impl GpuRenderer {
 fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + use<> {
     let target = &picture.target;
     let fits = picture.scene.highest_class < 1 << (8 - CATEGORY_BITS);
-    let labels = if fits { Labels::WithClass } else { Labels::CategoryOnly };
     let sampled = target.supersampling > 1 && target.rgb.is_some();
     let labelled = target.category.is_some() || (fits && target.class.is_some());
     let plain = Job {
@@ -266,7 +266,7 @@ fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + 
             depth: target.depth.is_some(),
             items: target.instance.is_some() || (!fits && target.class.is_some()),
         },
-        labels,
+        with_class: fits,
         samples: 1,
     };
     let fine = Job {
@@ -287,13 +287,12 @@ fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + 
 
 #[cfg(test)]
 mod tests {
-    use super::device::Clipping;
     use super::*;
 
     /// A renderer on each adapter of this machine, if any.
-    fn renderers(clipping: Clipping) -> Vec<GpuRenderer> {
+    fn renderers(features: wgpu::Features) -> Vec<GpuRenderer> {
         let adapters = adapter::all().unwrap_or_default();
-        let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::tested);
+        let open = |adapter: &wgpu::Adapter| Device::open(adapter, features).map(GpuRenderer::tested);
         adapters.iter().filter_map(|adapter| open(adapter).ok()?.ok()).collect()
     }
 
@@ -319,8 +318,8 @@ mod tests {
 
     #[test]
     fn adapter_without_clipping_renders_the_same_images() {
-        let together = renderers(Clipping::IfPossible).into_iter();
-        for (mut clips, mut does_not) in together.zip(renderers(Clipping::Never)) {
+        let together = renderers(wgpu::Features::CLIP_DISTANCES).into_iter();
+        for (mut clips, mut does_not) in together.zip(renderers(wgpu::Features::empty())) {
             assert!(!does_not.device.has_clip_distances);
             let pairs = render_several(&mut clips)
                 .expect("the images render")
@@ -336,7 +335,7 @@ mod tests {
 
     #[test]
     fn lost_device_returns_an_error_without_panic() {
-        for mut renderer in renderers(Clipping::IfPossible) {
+        for mut renderer in renderers(wgpu::Features::CLIP_DISTANCES) {
             renderer.device.card.destroy();
             for _ in 0..2 {
                 let error = render_several(&mut renderer).expect_err("the device is lost");

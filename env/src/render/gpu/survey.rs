@@ -3,7 +3,7 @@
 use super::super::cpu::CpuRenderer;
 use super::super::frame::Frame;
 use super::super::report::AdapterReport;
-use super::device::{Clipping, Device};
+use super::device::Device;
 use super::{GpuRenderer, adapter};
 use crate::camera::Camera;
 use crate::scene::Scene;
@@ -34,7 +34,7 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
 
 /// Renders a small image and compares it with the CPU renderer's.
 fn check_rendering(adapter: &wgpu::Adapter) -> Result<(), String> {
-    let device = Device::open(adapter, Clipping::IfPossible)?;
+    let device = Device::open(adapter, wgpu::Features::CLIP_DISTANCES)?;
     let mut renderer = GpuRenderer::tested(device).map_err(|error| error.to_string())?;
     let world = WorldDraft::with_objects(vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])]);
     let scene = Scene::from_world(&world.check().map_err(|error| error.to_string())?);

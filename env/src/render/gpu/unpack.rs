@@ -5,7 +5,6 @@ use super::super::frame::FAR_DEPTH;
 use super::super::target::Target;
 use super::super::view::NEAR;
 use super::atlas::Layout;
-use super::instances::Labels;
 use crate::scene::Scene;
 
 /// Bytes per pixel in each plane.
@@ -17,7 +16,7 @@ pub(super) fn unpack(
     layout: Layout,
     corner: [u32; 2],
     scene: &Scene,
-    labels: Labels,
+    with_class: bool,
     target: &mut Target<'_>,
 ) {
     let (width, height) = (target.width as usize, target.height as usize);
@@ -42,7 +41,7 @@ pub(super) fn unpack(
                     *out = word[3] & ((1 << CATEGORY_BITS) - 1);
                 }
             }
-            if let (Some(class), Labels::WithClass) = (&mut target.class, labels) {
+            if let (Some(class), true) = (&mut target.class, with_class) {
                 for (out, word) in class[row.clone()].iter_mut().zip(words) {
                     *out = u16::from(word[3] >> CATEGORY_BITS);
                 }
@@ -54,7 +53,7 @@ pub(super) fn unpack(
             }
         }
         if let Some(items) = row_of(layout.items, y) {
-            if let (Some(class), Labels::CategoryOnly) = (&mut target.class, labels) {
+            if let (Some(class), false) = (&mut target.class, with_class) {
                 for (out, item) in class[row.clone()].iter_mut().zip(items) {
                     let item = (u32::from_le_bytes(*item) as usize).checked_sub(1);
                     *out = item
