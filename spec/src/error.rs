@@ -16,7 +16,7 @@ const NUM_SHOWN: usize = 20;
 const NUM_SHOWN_CHARACTERS: usize = 100;
 
 /// One problem of a document: where it is, what was found, what was expected, what to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Problem {
     /// Stable code of this kind of problem, such as `spec/unknown-key`.
     pub code: &'static str,

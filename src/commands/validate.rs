@@ -8,7 +8,7 @@ use crate::curriculum::{Trial, Tried, Undrawable, try_expert, try_worlds};
 use crate::documents::{self, Checked, Kind};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_of};
 use crate::scenarios::{ScenarioFile, task_from};
-use crate::spec::{Classes, Problem, SpecError, TaskSpec};
+use crate::spec::{Classes, SpecError, TaskSpec};
 use crate::{remarks, tasks};
 use clap::Args;
 use driftworld_text::{ShownPath, printable};
@@ -330,7 +330,7 @@ impl Verdict {
             .iter()
             .map(|(code, text)| json!({ "code": code, "message": text }));
         let problems = checked.error.as_ref().map(|error| {
-            let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
+            let listed: Vec<Value> = error.problems().iter().map(|problem| json!(problem)).collect();
             if listed.is_empty() {
                 vec![json!({ "code": error.code(), "message": error.to_string() })]
             } else {
@@ -363,11 +363,4 @@ impl Verdict {
         }
         report
     }
-}
-
-fn problem_json(problem: &Problem) -> Value {
-    json!({
-        "code": problem.code, "pointer": problem.pointer, "line": problem.line, "column": problem.column,
-        "found": problem.found, "expected": problem.expected, "advice": problem.advice,
-    })
 }

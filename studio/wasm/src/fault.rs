@@ -39,10 +39,9 @@ impl Fault {
 /// The problems of an error, as the page shows them. A syntax error is located where parsing stopped.
 pub(crate) fn problems_of(error: &SpecError) -> Vec<Value> {
     let to_json = |problem: &Problem| {
-        json!({
-            "code": problem.code, "pointer": problem.pointer, "line": problem.line, "column": problem.column,
-            "found": problem.found, "expected": problem.expected, "advice": problem.advice, "message": problem.to_string(),
-        })
+        let mut json = json!(problem);
+        json["message"] = problem.to_string().into();
+        json
     };
     if let SpecError::Syntax {
         line, column, reason, ..
