@@ -39,21 +39,6 @@ class DriftworldError(Exception):
         self.column: int | None = column if column is not None else first.get("column")
         self.expected: str | None = first.get("expected")
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_again, (type(self), str(self), self.code, self.problems, self.line, self.column))
-
-
-def _again(
-    kind: type[DriftworldError],
-    message: str,
-    code: str | None,
-    problems: list[dict[str, Any]],
-    line: int | None,
-    column: int | None,
-) -> DriftworldError:
-    """Unpickles an exception."""
-    return kind(message, code=code, problems=problems, line=line, column=column)
-
 
 class SpecError(DriftworldError, ValueError):
     """A task spec, world or scenario is wrong; each problem has its position."""
