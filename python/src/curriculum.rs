@@ -20,7 +20,6 @@ use serde_json::json;
 use crate::covered::covered_in;
 use crate::document::{Whole, from_python, to_py};
 use crate::errors::{Error, Result, wrong};
-use crate::json::json_to_py;
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 use crate::supply::{PyStream, Stream};
@@ -140,7 +139,7 @@ impl PyPlan {
             "variant": spec.variant, "seed": spec.seed, "index": spec.index, "progress": spec.progress,
             "chance": spec.agent_seed, "steps": spec.steps, "label": label,
         });
-        Ok(json_to_py(py, &dictionary)?)
+        Ok(to_py(py, &dictionary)?)
     }
 
     /// The experience that follows when the budget of experience `number`'s regime is spent.

@@ -19,7 +19,6 @@ use crate::classes::catalogue;
 use crate::document::{Whole, to_py};
 use crate::errors::{Result, wrong};
 use crate::interruptible::{run_cancellable, run_detached};
-use crate::json::json_to_py;
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
@@ -212,7 +211,7 @@ impl PyMatrix {
             "anchor_correlation": found.anchor_correlation,
             "share_of_shorter_random_orders": share_of_shorter_orders(matrix, &found, seed.0),
         });
-        Ok(json_to_py(py, &found)?)
+        Ok(to_py(py, &found)?)
     }
 
     fn __len__(&self) -> usize {

@@ -11,20 +11,17 @@ use serde_json::Value;
 
 use crate::classes::catalogue;
 use crate::errors::{Error, Result, described, wrong};
-use crate::json::json_to_py;
 use crate::rounding::{detach, usually_rounded};
 
 /// Converts any serialisable value to Python.
 pub(crate) fn to_py<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let value = serde_json::to_value(value).map_err(wrong)?;
-    json_to_py(py, &value)
+    parsed(py, &serde_json::to_string(value).map_err(wrong)?)
 }
 
-/// Parses our JSON like Python's own parser, but independently of the calling thread's rounding mode.
+/// Parses our JSON with Python's own parser, but independently of the calling thread's rounding mode.
 #[pyfunction]
 pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
-    let value: Value = usually_rounded(|| serde_json::from_str(text)).map_err(wrong)?;
-    json_to_py(py, &value)
+    usually_rounded(|| py.import("json")?.call_method1("loads", (text,)))
 }
 
 /// Converts a Python value, including `NumPy` numbers, to JSON.

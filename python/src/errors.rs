@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::json;
 
-use crate::json::json_to_py;
+use crate::document::to_py;
 
 /// An error to be raised in Python.
 #[derive(Debug)]
@@ -206,5 +206,5 @@ pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bou
         "code": problem.code, "pointer": problem.pointer, "line": known(problem.line), "column": known(problem.column),
         "found": problem.found, "expected": problem.expected, "advice": problem.advice, "message": problem.to_string(),
     });
-    json_to_py(py, &described)
+    to_py(py, &described)
 }

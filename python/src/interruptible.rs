@@ -80,15 +80,10 @@ pub(crate) fn run_detached<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let pool = workers(py)?;
-    spawn(py, move || pool.install(work))
-}
-
-/// Like [`run_detached`], on one thread outside the pool.
-pub(crate) fn spawn<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (done, ended) = mpsc::channel();
     let worker = thread::spawn(move || {
         let _done: mpsc::Sender<()> = done;
-        usually_rounded(work)
+        usually_rounded(|| pool.install(work))
     });
     wait(py, &Mutex::new(ended))?;
     let result = py.detach(|| worker.join());

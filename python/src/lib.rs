@@ -16,7 +16,6 @@ mod elements;
 mod errors;
 mod files;
 mod interruptible;
-mod json;
 mod logs;
 mod options;
 mod overrides;
@@ -54,7 +53,7 @@ mod native {
         scores::{PyScores, report},
         supply::PyStream,
         task::{PyTask, built_in_names, task_groups},
-        variant::{PyVariant, load_variant, load_variants, variant_again},
+        variant::{PyVariant, load_variant, load_variants},
     };
 
     #[pymodule_init]

@@ -17,7 +17,6 @@ use serde_json::{Map, Value, json};
 
 use crate::document::{Whole, from_python, to_py};
 use crate::errors::{Result, wrong};
-use crate::json::json_to_py;
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 
@@ -148,7 +147,7 @@ pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<R
     Ok((
         log.run_id,
         columns,
-        json_to_py(py, &logger)?,
+        to_py(py, &logger)?,
         to_py(py, &log.scenario_info)?,
         warnings,
     ))
@@ -171,7 +170,7 @@ pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, 
         "experiences": counts.experiences, "files": counts.files, "workers": counts.workers, "blocks": counts.blocks,
         "tasks": counts.tasks,
     });
-    Ok(json_to_py(py, &said)?)
+    Ok(to_py(py, &said)?)
 }
 
 /// The current time, to the microsecond, or the one in `DRIFTWORLD_CLOCK`.
@@ -210,7 +209,7 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
     columns.set_item("block_type", words(py, rows.block_types())?)?;
     columns.set_item("block_subtype", words(py, rows.block_subtypes())?)?;
     columns.set_item("task_name", shared(py, rows.task_names(), text)?)?;
-    let params = |params: &TaskParams| json_to_py(py, &Value::Object(Map::clone(&Arc::clone(params))));
+    let params = |params: &TaskParams| to_py(py, &Value::Object(Map::clone(&Arc::clone(params))));
     columns.set_item("task_params", shared(py, rows.task_params(), params)?)?;
     columns.set_item("exp_status", words(py, rows.exp_statuses())?)?;
     let micros = rows.timestamps().iter().map(|stamp| stamp.unix_micros());

@@ -15,9 +15,8 @@ use pyo3::types::{PyBytes, PyTuple};
 use serde_json::json;
 
 use crate::classes::catalogue;
-use crate::document::Whole;
+use crate::document::{Whole, to_py};
 use crate::errors::{Error, Result, wrong};
-use crate::json::json_to_py;
 use crate::rounding::detach;
 
 /// Maximum bytes of frames per call.
@@ -91,7 +90,7 @@ impl PyRecording {
             "steps": recording.actions.len(), "reward": recording.reward, "ended_by": recording.ended_by.map(EndedBy::word),
             "edits": recording.edits.len(), "seconds_per_step": recording.seconds_per_step(),
         });
-        Ok(json_to_py(py, &about)?)
+        Ok(to_py(py, &about)?)
     }
 
     /// The JSON of its initial world.

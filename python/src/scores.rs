@@ -12,7 +12,6 @@ use serde_json::{Value, json};
 use crate::document::to_py;
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
-use crate::json::json_to_py;
 use crate::options::Options;
 use crate::rounding::detach;
 
@@ -54,7 +53,7 @@ impl PyScores {
                 rows.push(row);
             }
         }
-        Ok(json_to_py(py, &Value::Array(rows))?)
+        Ok(to_py(py, &Value::Array(rows))?)
     }
 
     /// Saves the results as ``driftworld metrics --do-save`` does.

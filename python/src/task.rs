@@ -91,11 +91,6 @@ impl PyTask {
         self.0.variant_names()
     }
 
-    /// Same as `variants`.
-    fn all_variants(&self) -> Vec<PyVariant> {
-        self.variants()
-    }
-
     /// All variants that it declares, in the order of the document.
     #[getter]
     fn variants(&self) -> Vec<PyVariant> {
@@ -143,7 +138,7 @@ impl PyTask {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
-        let again = specs(py, "_task_again")?;
+        let again = py.get_type::<Self>().getattr("from_json")?;
         Ok((again, (self.0.name().to_owned(), self.0.to_json())))
     }
 }

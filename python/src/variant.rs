@@ -11,10 +11,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::distances::element;
-use crate::document::{Whole, from_python, to_py};
+use crate::document::{Whole, from_python, parsed, to_py};
 use crate::errors::{Result, wrong};
 use crate::interruptible::run_detached;
-use crate::json::json_to_py;
 use crate::portions::{draw, numbers};
 use crate::rounding::{detach, usually_rounded};
 use crate::task::{PyTask, hash_of, specs};
@@ -124,8 +123,7 @@ impl PyVariant {
     /// World number ``index`` under a seed, as a dictionary.
     #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     pub(crate) fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
-        let world = detach(py, || driftworld_generator::sample(&self.0, seed.0, index.0))?;
-        Ok(to_py(py, &world)?)
+        Ok(parsed(py, &self.sample_json(py, seed, index)?)?)
     }
 
     /// Like ``sample``, as one line of JSON.
@@ -148,8 +146,7 @@ impl PyVariant {
         start: Whole,
         threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
-        let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
-        self.many(py, [seed, start, count, threads], value, |value| json_to_py(py, &value))
+        self.many(py, [seed, start, count, threads], |text| parsed(py, &text))
     }
 
     /// Like ``sample_many``, each world as one line of JSON.
@@ -165,8 +162,7 @@ impl PyVariant {
         start: Whole,
         threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
-        let text = |world: World| world.to_json();
-        self.many(py, [seed, start, count, threads], text, |text| {
+        self.many(py, [seed, start, count, threads], |text| {
             Ok(text.into_pyobject(py)?.into_any())
         })
     }
@@ -196,51 +192,52 @@ impl PyVariant {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (PyTask, String, String))> {
-        let again = specs(py, "_variant_again")?;
+        let again = py.get_type::<Self>().getattr("_again")?;
         let values = serde_json::to_string(self.0.values()).map_err(wrong)?;
         Ok((again, (self.task(), self.0.name().to_owned(), values)))
+    }
+
+    /// Recreates a variant in another process.
+    #[staticmethod]
+    #[pyo3(name = "_again")]
+    fn again(task: &Bound<'_, PyTask>, name: &str, values: &str) -> Result<Self> {
+        let task = &task.get().0;
+        let wanted: indexmap::IndexMap<String, Value> = serde_json::from_str(values).map_err(wrong)?;
+        if let Ok(declared) = task.variant(name)
+            && *declared.values() == wanted
+        {
+            return Ok(Self(declared));
+        }
+        // Values that equal the base variant's are not set again: some values cannot be set.
+        let mut bases = usually_rounded(|| task.all_variants());
+        bases.extend(task.variant(DEFAULT_VARIANT));
+        let mut refused = None;
+        for base in bases {
+            let changes = wanted.iter().filter(|(name, value)| base.value(name) != Some(*value));
+            match base.with(name, changes.map(|(name, value)| (name.clone(), value.clone()))) {
+                Ok(variant) => return Ok(Self(variant)),
+                Err(error) => refused = Some(error),
+            }
+        }
+        Err(refused.map_or_else(|| wrong("the task has no variant").into(), Into::into))
     }
 }
 
 impl PyVariant {
-    /// A list of worlds, each converted by `make` and then by `hand_over` for Python.
-    fn many<'py, T: Send>(
+    /// A list of worlds, each converted from its JSON by `hand_over` for Python.
+    fn many<'py>(
         &self,
         py: Python<'py>,
         [seed, start, count, threads]: [Whole; 4],
-        make: impl Fn(World) -> T + Sync,
-        hand_over: impl Fn(T) -> PyResult<Bound<'py, PyAny>>,
+        hand_over: impl Fn(String) -> PyResult<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyList>> {
         let (drawn, numbers) = (PyList::empty(py), numbers(start.0, count.0)?);
-        draw(py, &self.0, seed.0, numbers, threads.0, make, |made| {
-            drawn.append(hand_over(made)?)
+        let text = |world: World| world.to_json();
+        draw(py, &self.0, seed.0, numbers, threads.0, text, |text| {
+            drawn.append(hand_over(text)?)
         })?;
         Ok(drawn)
     }
-}
-
-/// Recreates a variant in another process.
-#[pyfunction]
-pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) -> Result<PyVariant> {
-    let task = &task.get().0;
-    let wanted: indexmap::IndexMap<String, Value> = serde_json::from_str(values).map_err(wrong)?;
-    if let Ok(declared) = task.variant(name)
-        && *declared.values() == wanted
-    {
-        return Ok(PyVariant(declared));
-    }
-    // Values that equal the base variant's are not set again: some values cannot be set.
-    let mut bases = usually_rounded(|| task.all_variants());
-    bases.extend(task.variant(DEFAULT_VARIANT));
-    let mut refused = None;
-    for base in bases {
-        let changes = wanted.iter().filter(|(name, value)| base.value(name) != Some(*value));
-        match base.with(name, changes.map(|(name, value)| (name.clone(), value.clone()))) {
-            Ok(variant) => return Ok(PyVariant(variant)),
-            Err(error) => refused = Some(error),
-        }
-    }
-    Err(refused.map_or_else(|| wrong("the task has no variant").into(), Into::into))
 }
 
 /// A variant by its name: built in, or a path; with `#` before the variant's own name.

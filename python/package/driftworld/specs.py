@@ -183,16 +183,6 @@ def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple
         raise FileNotFoundError(f"document: found no file {name!r}, expected {expected}") from error
 
 
-def _task_again(name: str, text: str) -> TaskSpec:
-    """Unpickles a task spec."""
-    return TaskSpec.from_json(name, text)
-
-
-def _variant_again(task: TaskSpec, name: str, values: str) -> Variant:
-    """Unpickles a variant."""
-    return _native.variant_again(task, name, values)
-
-
 def _drift_again(from_: Variant, to: Variant, schedule: str | None, switch: Any, seed: int) -> Drift:
     """Unpickles a drift."""
     return Drift(from_, to, schedule=None if schedule is None else json.loads(schedule), switch=switch, seed=seed)

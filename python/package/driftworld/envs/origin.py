@@ -141,7 +141,7 @@ class Home:
         if self.task is None or self.first is None:
             return []
         begun = [source.variant.id for source in sources if isinstance(source, OneVariant)]
-        return list(dict.fromkeys([*(variant.id for variant in self.task.all_variants()), self.first.id, *begun]))
+        return list(dict.fromkeys([*(variant.id for variant in self.task.variants), self.first.id, *begun]))
 
     def source(self) -> Source:
         """The worlds that the environment starts with."""
