@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 import os
 from collections.abc import Mapping
@@ -27,6 +28,14 @@ def plain(value: Any) -> Any:
     raise TypeError(
         f"found a value of type {found}, expected one that JSON can represent: a number, string, list or dictionary"
     )
+
+
+def json_or_word(text: str) -> Any:
+    """The value of an option on the command line: JSON, or else the text itself."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
 
 
 def described(value: Any) -> Any:

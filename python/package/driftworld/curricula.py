@@ -82,8 +82,7 @@ class Experience:
 
     def world(self) -> dict[str, Any]:
         """Its world as it is run, with the scenario's step limit applied."""
-        world: dict[str, Any] = _native.parsed(self._plan.world(self.number).text())
-        return world
+        return _native.parsed(self._plan.world(self.number).text())
 
 
 @dataclass(frozen=True)

@@ -68,8 +68,7 @@ class Recording:
 
     def world(self) -> dict[str, Any]:
         """Its initial world."""
-        world: dict[str, Any] = _native.parsed(self._handle.world())
-        return world
+        return _native.parsed(self._handle.world())
 
     def frames(
         self,

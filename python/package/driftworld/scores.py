@@ -122,8 +122,7 @@ class Metrics:
         Raises:
             ValueError: If there are several lifetimes; use each of :attr:`lifetimes` instead.
         """
-        tasks: dict[str, dict[str, Any]] = self._only("tasks", "task_metrics")
-        return tasks
+        return self._only("tasks", "task_metrics")
 
     @property
     def null(self) -> dict[str, dict[str, Any]]:
@@ -137,8 +136,7 @@ class Metrics:
         Raises:
             ValueError: If there are several lifetimes; use ``"null"`` of each of :attr:`lifetimes` instead.
         """
-        bands: dict[str, dict[str, Any]] = self._only("null", "null")
-        return bands
+        return self._only("null", "null")
 
     @property
     def readings(self) -> dict[str, dict[str, Any]]:
@@ -155,8 +153,7 @@ class Metrics:
             ValueError: If there are several lifetimes; use ``"readings"`` of each of :attr:`lifetimes` instead, and
                 :attr:`repeats` for all together.
         """
-        rows: dict[str, dict[str, Any]] = self._only("readings", "readings")
-        return rows
+        return self._only("readings", "readings")
 
     @property
     def reached(self) -> dict[str, dict[str, Any]]:
@@ -170,8 +167,7 @@ class Metrics:
         Raises:
             ValueError: If there are several lifetimes; use ``"reached"`` of each of :attr:`lifetimes` instead.
         """
-        tasks: dict[str, dict[str, Any]] = self._only("reached", "reached")
-        return tasks
+        return self._only("reached", "reached")
 
     @property
     def curves(self) -> dict[str, dict[str, Any]]:
@@ -185,14 +181,14 @@ class Metrics:
         Raises:
             ValueError: If there are several lifetimes; use ``"curves"`` of each of :attr:`lifetimes` instead.
         """
-        tasks: dict[str, dict[str, Any]] = self._only("curves", "curves")
-        return tasks
+        return self._only("curves", "curves")
 
-    def _only(self, name: str, field: str) -> Any:
+    def _only(self, name: str, field: str) -> dict[str, Any]:
         """A field of the only lifetime, for the property ``name``."""
         if len(self.lifetimes) != 1:
             raise ValueError(f"{name}: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
-        return self.lifetimes[0][field]
+        only: dict[str, Any] = self.lifetimes[0][field]
+        return only
 
     def __getitem__(self, name: str) -> Any:
         values = [lifetime[name] for lifetime in self.lifetimes]

@@ -192,7 +192,7 @@ class VectorRollout(Rollout):
         traces = [(env, self._traces.get(number)) for env, number in enumerate(self._running) if number is not None]
         checked = [(env, trace) for env, trace in traces if trace is not None]
         for env, trace in checked:
-            trace.see(_row(observations, env))
+            trace.see(row_of(observations, env))
         actions = self._agent.act(observations, self._permitted(active))
         for env, trace in checked:
             trace.do(np.asarray(actions)[env])
@@ -279,7 +279,7 @@ class VectorRollout(Rollout):
         return infos
 
 
-def _row(observations: Any, env: int) -> Any:
+def row_of(observations: Any, env: int) -> Any:
     """The observation of one environment."""
     if isinstance(observations, Mapping):
         return {kind: array[env] for kind, array in observations.items()}

@@ -30,6 +30,7 @@ from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor, VecTrans
 
 from driftworld._plain import described
 from driftworld.lifetimes import Transition
+from driftworld.vector_lifetimes import row_of
 
 #: Attributes that a model keeps when another one is loaded into it.
 _KEPT_ATTRIBUTES = ("env", "_vec_normalize_env", "_logger", "_custom_logger")
@@ -253,7 +254,7 @@ class _OnPolicy(_Collector):
         model, buffer = self.model, self.model.rollout_buffer
         model.num_timesteps += int(active.sum())
         for env in np.flatnonzero(cut_off).tolist():
-            last = model.policy.obs_to_tensor(_row(next_obs, env))[0]
+            last = model.policy.obs_to_tensor(row_of(next_obs, env))[0]
             with torch.no_grad():
                 # Computed in float32, like Stable-Baselines3.
                 rewards[env] += (model.gamma * model.policy.predict_values(last)[0]).item()
@@ -303,7 +304,7 @@ class _OffPolicy(_Collector):
         model = self.model
         for env in np.flatnonzero(active).tolist():
             info = {"TimeLimit.truncated": bool(cut_off[env])}
-            step = _row(self.observed, env), _row(next_obs, env), self.stored[env], rewards[env], ended[env], info
+            step = row_of(self.observed, env), row_of(next_obs, env), self.stored[env], rewards[env], ended[env], info
             self.waiting.append(step)
             if ended[env] and model.action_noise is not None:
                 model.action_noise.reset(**({"indices": [env]} if model.n_envs > 1 else {}))
@@ -356,13 +357,6 @@ def _active_samples(buffer: Any, positions: NDArray[np.intp], batch_size: int | 
 def _batch_of_one(observation: Any) -> Any:
     """One observation as a batch of one."""
     return _stack([observation])
-
-
-def _row(observations: Any, env: int) -> Any:
-    """The observation of one environment."""
-    if isinstance(observations, Mapping):
-        return {kind: array[env] for kind, array in observations.items()}
-    return observations[env]
 
 
 def _stack(rows: Any) -> Any:

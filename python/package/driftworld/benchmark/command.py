@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import os
 import sys
 from pathlib import Path
 from typing import Any
 
 from driftworld._files import write_whole
+from driftworld._plain import json_or_word
 from driftworld.benchmark.figure import figure
 from driftworld.benchmark.runner import STALE, Cell, learners_by_name, make_learner, run_cells
 from driftworld.benchmark.sequence import Sequence
@@ -115,15 +115,8 @@ def _cells(parsed: argparse.Namespace) -> list[Cell]:
     words = [each.partition("=")[0] for each in parsed.set]
     if len(set(words)) < len(words):
         raise ValueError(f"--set: found {', '.join(parsed.set)}, expected each name once; run the command once for each value")
-    given = tuple((name, _value(text)) for name, _, text in (each.partition("=") for each in parsed.set))
+    given = tuple((name, json_or_word(text)) for name, _, text in (each.partition("=") for each in parsed.set))
     return [Cell(parsed.sequence, name, seed, parsed.split, given) for seed in seeds for name in dict.fromkeys(learners)]
-
-
-def _value(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError:
-        return text
 
 
 def _run(parsed: argparse.Namespace) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import driftworld
+from driftworld._plain import json_or_word
 from driftworld.check import Finding, Report, check, versions
 
 
@@ -55,10 +56,7 @@ def _option(text: str) -> tuple[str, Any]:
     name, equals, value = text.partition("=")
     if not equals or not name.isidentifier():
         raise argparse.ArgumentTypeError(f'found {text!r}, expected NAME=VALUE, such as size=64 or actions="discrete"')
-    try:
-        return name, json.loads(value)
-    except ValueError:
-        return name, value
+    return name, json_or_word(value)
 
 
 def _checked(task: str, asked: argparse.Namespace) -> Report:

@@ -207,8 +207,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         """The current world as a document: a reset to it (``options={"world": …}``) continues identically to the last
         bit.
         """
-        state: dict[str, Any] = _native.parsed(self._members.batch.state(0))
-        return state
+        return _native.parsed(self._members.batch.state(0))
 
     def record(self, records: bool = True) -> None:
         """Starts or stops recording; :meth:`recording` returns the result."""

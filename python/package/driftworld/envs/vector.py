@@ -105,8 +105,6 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise ValueError("variants: found drift as well, expected only one of the two")
         if variants is not None and (isinstance(variants, str) or len(variants) != num_envs):
             raise ValueError(f"variants: found {variants!r}, expected a list of {num_envs}, one for each environment")
-        if whole("num_envs", num_envs) == 0:
-            raise ValueError("num_envs: found 0, expected at least 1")
         if not isinstance(copy, (bool, np.bool_)):
             raise ValueError(f"copy: found {copy!r}, expected True or False")
         mode = autoreset_mode_of(autoreset_mode)
@@ -421,8 +419,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def state(self, env: int) -> dict[str, Any]:
         """The current world of an environment, as a document."""
         self._expect("state", env)
-        state: dict[str, Any] = _native.parsed(self._members.batch.state(env))
-        return state
+        return _native.parsed(self._members.batch.state(env))
 
     def origin(self, env: int) -> dict[str, Any]:
         """The origin of an environment's world, as in :meth:`DriftworldEnv.origin`."""
