@@ -358,7 +358,7 @@ fn batches_and_spawned_objects_use_the_library() {
         num_threads: 1,
         ..BatchOptions::default()
     };
-    let mut batch = Batch::with_catalogue(2, source, options, &catalogue).expect("the worlds start");
+    let mut batch = Batch::with_catalogue_while(2, source, options, &catalogue, &|| true).expect("the worlds start");
     // The quad is 2 m wide and blocks the path at 5 m: the agent stops half a metre plus a skin in front of it.
     for _ in 0..20 {
         let ahead = Action::Continuous([10.0, 0.0, 0.0]);

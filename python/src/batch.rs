@@ -10,7 +10,7 @@ use driftworld::tasks::{check_variants, check_world};
 use driftworld_env::{
     Action, Batch, BatchOptions, Catalogue, Effect, EndedBy, EnvError, Event, GoOn, RendererKind, WorldSource, top_down,
 };
-use driftworld_spec::{Modality, TaskSpec, Variant, World};
+use driftworld_spec::{Modality, TaskSpec, Variant};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -133,7 +133,7 @@ impl PyBatch {
     /// The renderer: `cpu` or `gpu`.
     #[getter]
     fn renderer(&self) -> Result<&'static str> {
-        Ok(self.lock()?.batch.renderer().name())
+        Ok(self.lock()?.batch.renderer().into())
     }
 
     /// Makes an environment draw its worlds with a different seed, starting at this index.
@@ -157,14 +157,10 @@ impl PyBatch {
 
     /// Gives an environment the world of a stream for its next episode.
     fn give(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
-        let Stream::World { world, .. } = &stream.get().0 else {
-            return Err(PyValueError::new_err(
-                "world: found a stream of variants, expected a stream of a single world",
-            )
-            .into());
-        };
-        self.known.check(&stream.get().0)?;
-        self.supply(env)?.give(World::clone(world));
+        let stream = &stream.get().0;
+        let world = stream.single()?;
+        self.known.check(stream)?;
+        self.supply(env)?.give(world.clone());
         Ok(())
     }
 
@@ -290,10 +286,7 @@ impl PyBatch {
     #[pyo3(signature = (records, env=None))]
     fn record(&self, records: bool, env: Option<usize>) -> Result<()> {
         let batch = &mut self.lock()?.batch;
-        match env {
-            Some(env) => batch.set_recording_of(env, records),
-            None => batch.set_recording(records),
-        }
+        batch.set_recording(env, records);
         Ok(())
     }
 

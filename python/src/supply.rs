@@ -113,12 +113,7 @@ impl PyStream {
 
     /// The JSON of a single-world stream.
     fn text(&self) -> Result<String> {
-        match &self.0 {
-            Stream::World { world, .. } => Ok(world.to_json()),
-            _ => Err(
-                PyValueError::new_err("world: found a stream of variants, expected a stream of a single world").into(),
-            ),
-        }
+        Ok(self.0.single()?.to_json())
     }
 
     /// The layout of environments for its worlds with these options (JSON), one per variant, as JSON.
@@ -143,6 +138,15 @@ impl PyStream {
 }
 
 impl Stream {
+    /// The world of a stream of a single world.
+    pub(crate) fn single(&self) -> PyResult<&World> {
+        let Self::World { world, .. } = self else {
+            let message = "world: found a stream of variants, expected a stream of a single world";
+            return Err(PyValueError::new_err(message));
+        };
+        Ok(world)
+    }
+
     /// Deals out the worlds of variants in an order to `num_envs` environments.
     fn dealt(variants: &[Bound<'_, PyVariant>], order: Arc<[u32]>, num_envs: u32) -> PyResult<Vec<Self>> {
         let wrong = |found: &str, expected: &str| {

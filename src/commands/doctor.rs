@@ -157,7 +157,7 @@ fn as_json(report: &RendererReport, missing: &[String]) -> Value {
             "adapters": report.adapters.iter().map(adapter).collect::<Vec<_>>(),
             "missing": missing,
         },
-        "auto": report.auto.name(),
+        "auto": <&str>::from(report.auto),
     })
 }
 

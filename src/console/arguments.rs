@@ -55,7 +55,8 @@ pub(super) fn columns(word: &str) -> Result<u32, String> {
 }
 
 pub(super) fn category(word: &str) -> Result<Category, String> {
-    Category::from_name(word).ok_or_else(|| not_one_of("category", word, &Category::names()))
+    word.parse()
+        .map_err(|_| not_one_of("category", word, &Category::names()))
 }
 
 fn not_one_of(what: &str, word: &str, names: &[&str]) -> String {

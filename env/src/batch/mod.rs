@@ -65,23 +65,10 @@ impl Batch {
     /// [`EnvError::BatchThreads`] if threads cannot be started; [`EnvError::NoGpu`] if a GPU is requested and none works; and
     /// the errors of [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
-        Self::with_catalogue(num_envs, source, options, &Catalogue::default())
+        Self::with_catalogue_while(num_envs, source, options, &Catalogue::default(), &never_stop)
     }
 
-    /// Like [`Batch::new`], with assets from a catalogue for all environments and episodes.
-    ///
-    /// # Errors
-    /// The errors of [`Batch::new`].
-    pub fn with_catalogue(
-        num_envs: usize,
-        source: WorldSource,
-        options: BatchOptions,
-        catalogue: &Catalogue,
-    ) -> Result<Self, EnvError> {
-        Self::with_catalogue_while(num_envs, source, options, catalogue, &never_stop)
-    }
-
-    /// Like [`Batch::with_catalogue`], but stops when `go_on` returns false.
+    /// Like [`Batch::new`], with assets from a catalogue for all environments and episodes; stops when `go_on` returns false.
     ///
     /// # Errors
     /// The errors of [`Batch::new`], and [`EnvError::Stopped`] if `go_on` returned false.
@@ -185,16 +172,11 @@ impl Batch {
         self.slots.get(env)?.step.ended_by
     }
 
-    /// Starts or stops recording in every environment. Steps allocate memory while recording.
-    pub fn set_recording(&mut self, records: bool) {
-        for env in 0..self.slots.len() {
-            self.set_recording_of(env, records);
-        }
-    }
-
-    /// Like [`Batch::set_recording`], for one environment. Does nothing if there is no such environment.
-    pub fn set_recording_of(&mut self, env: usize, records: bool) {
-        if let Some(slot) = self.slots.get_mut(env) {
+    /// Starts or stops recording in one environment, if it exists, or in every one. Steps allocate memory while recording.
+    pub fn set_recording(&mut self, env: Option<usize>, records: bool) {
+        let is_chosen = |place: usize| env.is_none_or(|env| env == place);
+        let slots = self.slots.iter_mut().enumerate();
+        for (_, slot) in slots.filter(|(place, _)| is_chosen(*place)) {
             slot.set_recording(records);
         }
     }

@@ -29,11 +29,6 @@ impl Category {
     pub fn names() -> Vec<&'static str> {
         Self::ALL.iter().map(|category| category.name()).collect()
     }
-
-    /// The category with this name, ignoring case.
-    pub fn from_name(name: &str) -> Option<Self> {
-        name.parse().ok()
-    }
 }
 
 /// The severity of a remark.
@@ -46,11 +41,4 @@ pub enum Level {
     Warning,
     /// A request was refused.
     Error,
-}
-
-impl Level {
-    /// Its name in messages.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
 }

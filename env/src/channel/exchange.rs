@@ -183,7 +183,7 @@ impl Channels {
     ) -> Option<Outgoing> {
         self.is_active(category).then(|| {
             let payload = json!({
-                "category": category.name(), "level": level.name(), "message": text.into(), "stack_trace": "",
+                "category": category.name(), "level": <&str>::from(level), "message": text.into(), "stack_trace": "",
             });
             self.message(Channel::Debug, "debug_message", Some(payload), None, time)
         })

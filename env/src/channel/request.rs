@@ -129,7 +129,9 @@ pub(super) fn categories(message: &Message) -> Result<Vec<(Category, bool)>, Ref
                 "payload: expected entries such as {\"category\": \"agent\", \"active\": true}",
             ));
         };
-        let category = Category::from_name(name).ok_or_else(|| unknown("category", name, &Category::names()))?;
+        let category = name
+            .parse()
+            .map_err(|_| unknown("category", name, &Category::names()))?;
         Ok((category, *active))
     };
     list.iter().map(one).collect()

@@ -16,13 +16,6 @@ pub enum RendererKind {
     Auto,
 }
 
-impl RendererKind {
-    /// Its name: `cpu`, `gpu` or `auto`.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
-
 fn unknown(word: &str) -> EnvError {
     EnvError::NoSuchRenderer { found: word.to_owned() }
 }
