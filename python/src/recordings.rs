@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use driftworld::film::{FilmOptions, film, named, write_film};
 use driftworld::recordings::RecordedEpisodes;
-use driftworld_env::{Action, Catalogue, EndedBy, EpisodeOrigin, Recording};
+use driftworld_env::{Catalogue, EndedBy, EpisodeOrigin, Recording};
 use driftworld_metrics::Record;
 use driftworld_report::picture::Picture;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3};
@@ -101,18 +101,12 @@ impl PyRecording {
     /// The actions: rows of the action table as int64 `(steps,)`, or numbers as float64 `(steps, 3)`.
     fn actions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let rows: Option<Vec<i64>> = (self.0.actions.iter())
-            .map(|action| match action {
-                Action::Discrete(row) => Some(*row as i64),
-                Action::Continuous(_) => None,
-            })
+            .map(|action| Some(action.row()? as i64))
             .collect();
         if let Some(rows) = rows.filter(|rows| !rows.is_empty()) {
             return Ok(PyArray1::from_vec(py, rows).into_any());
         }
-        let numbers = self.0.actions.iter().flat_map(|action| match action {
-            Action::Discrete(row) => [*row as f64, f64::NAN, f64::NAN],
-            Action::Continuous(numbers) => *numbers,
-        });
+        let numbers = self.0.actions.iter().flat_map(|action| action.raw_numbers());
         let numbers = PyArray1::from_iter(py, numbers);
         Ok(numbers.reshape([self.0.actions.len(), 3])?.into_any())
     }

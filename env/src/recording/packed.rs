@@ -28,11 +28,11 @@ pub(super) enum PackedActions {
 
 impl PackedActions {
     pub(super) fn new(actions: &[Action]) -> Self {
-        let rows: Option<Vec<u16>> = actions.iter().map(row).collect();
+        let rows: Option<Vec<u16>> = actions.iter().map(|action| u16::try_from(action.row()?).ok()).collect();
         if let Some(rows) = rows {
             return Self::Rows(deflated(rows.iter().flat_map(|row| row.to_le_bytes())));
         }
-        let numbers = || actions.iter().flat_map(|action| numbers(*action));
+        let numbers = || actions.iter().flat_map(|action| action.raw_numbers());
         if numbers().all(|number| !number.is_nan() && f64::from(number as f32).to_bits() == number.to_bits()) {
             return Self::F32(deflated(numbers().flat_map(|number| (number as f32).to_le_bytes())));
         }
@@ -74,20 +74,6 @@ impl PackedActions {
             }
         };
         Ok(bytes.chunks_exact(width).map(action).collect())
-    }
-}
-
-fn row(action: &Action) -> Option<u16> {
-    match action {
-        Action::Discrete(row) => u16::try_from(*row).ok(),
-        Action::Continuous(_) => None,
-    }
-}
-
-fn numbers(action: Action) -> [f64; 3] {
-    match action {
-        Action::Discrete(row) => [row as f64, f64::NAN, f64::NAN],
-        Action::Continuous(numbers) => numbers,
     }
 }
 

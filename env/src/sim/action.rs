@@ -31,6 +31,22 @@ pub(crate) struct Intent {
 }
 
 impl Action {
+    /// The row, if it is one.
+    pub fn row(self) -> Option<usize> {
+        match self {
+            Self::Discrete(row) => Some(row),
+            Self::Continuous(_) => None,
+        }
+    }
+
+    /// Its three numbers as they are; for a row, its number and two NaNs, which no action contains.
+    pub fn raw_numbers(self) -> [f64; 3] {
+        match self {
+            Self::Discrete(row) => [row as f64, f64::NAN, f64::NAN],
+            Self::Continuous(numbers) => numbers,
+        }
+    }
+
     /// The three numbers of the action, in the units of the world's action model.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use super::encounters::Encounters;
 use super::groups::{SOLID, WALL};
 use super::pushing::push_bodies;
 use super::slide::{Obstacles, SKIN};
-use super::state::{SimState, wrapped};
+use super::state::{SimState, entry, wrapped};
 use super::views::Views;
 
 /// Turns and moves the agent, and records the objects that it meets on the way.
@@ -37,12 +37,7 @@ pub(super) fn apply_action(
     #[cfg(test)]
     (encounters.num_queries += budget::AGENTS - budget.left());
     // Contacts with moving ghosts depend on both paths, so they are found after the ghosts have moved.
-    let moves = |object: u32| {
-        let movers = &state.movers;
-        movers
-            .binary_search_by_key(&(object as usize), |mover| mover.object)
-            .is_ok()
-    };
+    let moves = |object: u32| entry(&state.movers, object as usize, |mover| mover.object).is_some();
     let skipped = |object: u32| !world.objects[object as usize].solid && moves(object);
     views
         .bodies

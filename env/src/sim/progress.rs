@@ -7,7 +7,7 @@ use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, Wor
 use super::environment::Environment;
 use super::mover::Mover;
 use super::sim_ref::SimRef;
-use super::state::{SimState, wrapped};
+use super::state::{SimState, entry, wrapped};
 use super::views::Views;
 use crate::agents::OnRailsAgent;
 
@@ -121,15 +121,10 @@ fn save_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
     let own = &sim.objects()[index];
     let origin = apply_current_state(sim, index, object);
     let state = sim.state;
-    // All of these lists are sorted.
-    let mover = state.movers.binary_search_by_key(&index, |mover| mover.object);
-    let pushed = state.pushed.binary_search_by_key(&index, |body| body.object);
-    let returns = state.returning.binary_search_by_key(&index, |(other, _)| *other);
-    let rng = state.rngs.binary_search_by_key(&index, |rng| rng.object);
-    let mover = mover.ok().map(|found| &state.movers[found]);
-    let pushed = pushed.ok().map(|found| &state.pushed[found]);
-    let returns = returns.ok().map(|found| state.returning[found]);
-    let rng = rng.ok().map(|found| &state.rngs[found]);
+    let mover = entry(&state.movers, index, |mover| mover.object);
+    let pushed = entry(&state.pushed, index, |body| body.object);
+    let returns = entry(&state.returning, index, |(other, _)| *other);
+    let rng = entry(&state.rngs, index, |rng| rng.object);
     let (waypoint, goal, goals) = mover.map_or((0, None, 0), Mover::progress);
     ObjectProgress {
         present: own.present,
@@ -137,7 +132,7 @@ fn save_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
         touched: state.touches(index),
         in_range: own.in_range,
         origin,
-        returns_at: returns.map(|(_, tick)| tick),
+        returns_at: returns.map(|(_, tick)| *tick),
         goal,
         waypoint,
         goals,

@@ -164,8 +164,7 @@ impl SimState {
 
     /// A door's state besides being open or closed.
     pub(super) fn door_of(&self, object: usize) -> Option<&DoorState> {
-        let found = self.doors.binary_search_by_key(&object, |door| door.object).ok()?;
-        self.doors.get(found)
+        entry(&self.doors, object, |door| door.object)
     }
 
     /// The carried objects, in the order in which the agent picked them up.
@@ -230,4 +229,10 @@ impl SimState {
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map(|(index, _)| index)
     }
+}
+
+/// The entry of an object in a list that is sorted by object.
+pub(super) fn entry<T>(list: &[T], object: usize, object_of: impl Fn(&T) -> usize) -> Option<&T> {
+    let found = list.binary_search_by_key(&object, object_of).ok()?;
+    list.get(found)
 }

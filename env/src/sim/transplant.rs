@@ -8,7 +8,7 @@ use super::action::{Action, Intent};
 use super::environment::Environment;
 use super::mover::Mover;
 use super::sequence::Sequence;
-use super::state::SimState;
+use super::state::{SimState, entry};
 use super::walls::agent_obstacle;
 use crate::EnvError;
 
@@ -177,10 +177,7 @@ impl Environment {
         let is_ordered = |world: &World| world.objects[index].order.is_some();
         let counts = is_ordered(&self.world) || is_ordered(&other.world);
         let of = |what: &str| format!("{what} of object {index} ({})", name(&self.world, index));
-        let mover_progress = |state: &SimState| {
-            let place = state.movers.binary_search_by_key(&index, |mover| mover.object);
-            place.ok().map(|place| Mover::progress(&state.movers[place]))
-        };
+        let mover_progress = |state: &SimState| entry(&state.movers, index, |mover| mover.object).map(Mover::progress);
         Difference::of(of("the presence"), &own.present, &their.present)
             .or_else(|| Difference::of(of("the open state"), &own.open, &their.open))
             .or_else(|| {

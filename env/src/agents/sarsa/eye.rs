@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use crate::camera::Camera;
 use crate::render::{CpuRenderer, Target};
 use crate::sim::Environment;
 
@@ -18,7 +17,7 @@ const COLORS: usize = 8;
 /// Number of features: a share for each colour in each cell, then a constant 1.
 pub(super) const FEATURES: usize = COLUMNS * (BANDS.len() - 1) * COLORS + 1;
 
-/// Renders a small image of the camera's view and counts colours.
+/// Renders a small image of the agent's view and counts colours.
 #[derive(Default)]
 pub(super) struct Eye {
     renderer: CpuRenderer,
@@ -28,17 +27,11 @@ pub(super) struct Eye {
 impl Eye {
     /// Square roots of the shares of each cell that each colour covers, 0 to 1. The root gives small patches more weight.
     pub(super) fn look(&mut self, environment: &Environment) -> [f32; FEATURES] {
-        let agent = &environment.world().agent_params;
-        let state = environment.agent();
-        let camera = Camera::first_person(
-            state.position,
-            state.heading_deg,
-            agent.agent_height as f32,
-            agent.field_of_view as f32,
-        );
         self.rgb.resize(SIDE * SIDE * 3, 0);
         let mut target = Target::of_colors([SIDE as u32, SIDE as u32], &mut self.rgb);
-        let rendered = self.renderer.draw(environment.scene(), &camera, &mut target);
+        let rendered = self
+            .renderer
+            .draw(environment.scene(), &environment.camera(), &mut target);
         rendered.expect("the image size is valid");
         shares(&self.rgb)
     }
