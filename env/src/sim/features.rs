@@ -2,10 +2,10 @@
 
 use driftworld_spec::{Object, StateFeature, Stimulus, World};
 
-use super::areas::Zones;
 use super::environment::Environment;
 use super::state::{ObjectState, SimState};
 use super::termination::pays_now;
+use super::views::Views;
 
 impl Environment {
     /// The numbers of the requested features, in the world's order, followed by the instruction. The default features are
@@ -33,13 +33,7 @@ impl Environment {
     fn fill_state(&self, state: &mut [f32]) {
         let mut rest = state;
         for feature in &self.world.agent_params.state_features {
-            let mut numbers = values(&self.world, &self.state, &self.views.zones, *feature);
-            if *feature == StateFeature::Carrying {
-                // Uses the scene's class numbers.
-                let last = self.state.carried.last().map(|index| *index as usize);
-                let class = last.map_or(0, |index| self.views.scene.items[index].class_id);
-                numbers[1] = f32::from(class);
-            }
+            let numbers = values(&self.world, &self.state, &self.views, *feature);
             let (own, others) = rest.split_at_mut(feature.num_values());
             own.copy_from_slice(&numbers[..own.len()]);
             rest = others;
@@ -51,7 +45,7 @@ impl Environment {
 }
 
 /// The numbers of one feature, padded with zeros.
-fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> [f32; 3] {
+fn values(world: &World, state: &SimState, views: &Views, feature: StateFeature) -> [f32; 3] {
     let agent = &state.agent;
     let [x, y] = agent.position;
     let [vx, vy] = agent.velocity;
@@ -90,12 +84,14 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
             [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
         }),
         StateFeature::Carrying => {
-            let last = state.carried.last().map_or(0, |index| index + 1);
-            [state.carried.len() as f32, 0.0, last as f32]
+            let class = |index: u32| views.scene.items[index as usize].class_id;
+            let last = state.carried.last();
+            let (class, number) = last.map_or((0, 0), |&index| (class(index), index + 1));
+            [state.carried.len() as f32, f32::from(class), number as f32]
         }
         StateFeature::Energy => [state.energy as f32, 0.0, 0.0],
         StateFeature::Zone => {
-            let zones = || zones.around(agent.position.map(f64::from));
+            let zones = || views.zones.around(agent.position.map(f64::from));
             let rate: f64 = zones().map(|zone| zone.reward_per_second).sum();
             [zones().count() as f32, rate as f32, 0.0]
         }
