@@ -1,6 +1,6 @@
 //! Sanitises external text for display. Writers escape it for their own formats.
 
-use driftworld_text::printable;
+use driftworld_text::{printable, shortened};
 
 /// Maximum number of characters shown of a name.
 const MAX_NAME_CHARS: usize = 48;
@@ -21,17 +21,7 @@ pub(crate) fn note_shown(text: &str) -> String {
 
 fn cut(name: &str, limit: usize) -> String {
     // These two characters are not allowed in XML.
-    let replace_invalid = |c: char| match c {
-        '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
-        c => c,
-    };
-    let name = printable(name);
-    let mut chars = name.chars().map(replace_invalid);
-    let mut text: String = chars.by_ref().take(limit).collect();
-    if chars.next().is_some() {
-        text.push('…');
-    }
-    text
+    shortened(&printable(name).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}"), limit)
 }
 
 #[cfg(test)]

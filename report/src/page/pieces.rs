@@ -1,6 +1,6 @@
 //! The pieces that all parts of a page share: numbers, names, external sentences, warnings, and pictures with their text.
 
-use driftworld_text::rounded;
+use driftworld_text::{rounded, shortened};
 use maud::{Markup, PreEscaped, html};
 
 /// The list of warnings, which a reader should see before the numbers.
@@ -40,12 +40,7 @@ pub(super) fn breakable(name: &str) -> Markup {
 pub(super) fn calm(text: &str) -> String {
     /// Maximum number of characters shown.
     const MAX_CHARS: usize = 600;
-    let kept = text.chars().take(MAX_CHARS);
-    let mut calm: String = kept.map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(MAX_CHARS).is_some() {
-        calm.push('…');
-    }
-    calm
+    shortened(text, MAX_CHARS).replace(char::is_control, " ")
 }
 
 /// A number in a table: about four digits, with a typographic minus sign.

@@ -1,6 +1,7 @@
 //! Displays readings and the names of metrics. Colour and sign only repeat the word, which comes from the metrics.
 
 use driftworld_metrics::{Direction, Reading};
+use driftworld_text::capitalized;
 use maud::{Markup, html};
 
 /// A judgement of one value.
@@ -86,13 +87,7 @@ pub(super) fn title(name: &str) -> String {
         "backward_transfer_contrast" => "Backward transfer, contrast",
         "ste_rel_perf" => "Performance relative to the expert",
         "sample_efficiency" => "Sample efficiency",
-        _ => {
-            let mut words = crate::words::shown(name).replace('_', " ");
-            if let Some(first) = words.get_mut(..1) {
-                first.make_ascii_uppercase();
-            }
-            return words;
-        }
+        _ => return capitalized(&crate::words::shown(name).replace('_', " ")),
     };
     known.to_owned()
 }
