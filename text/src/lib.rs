@@ -23,6 +23,8 @@ pub use name::{IDENTIFIER_PATTERN, MAX_NAME_BYTES, MAX_NAME_CHARACTERS, NAME_PAT
 pub use number::{amount, rounded, short};
 pub use phrases::{capitalized, counted, first_of, joined_or, shortened, when};
 pub use plain::in_plain_words;
-pub use printable::{OneLine, ShownPath, is_unprintable, one_line, printable, printable_json, printable_lines, quoted};
+pub use printable::{
+    OneLine, ShownPath, ascii_json, is_unprintable, one_line, printable, printable_json, printable_lines, quoted,
+};
 pub use removed::{WordKind, removed, removed_words};
 pub use unbroken::{NO_BREAK, whole, with_blanks};

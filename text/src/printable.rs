@@ -89,11 +89,23 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
 pub fn printable_json(json: &str) -> Cow<'_, str> {
     // Between values a carriage return is white space, and an escape would be an error.
     let hostile = |c: char| is_unprintable(c) && !matches!(c, '\n' | '\t' | '\r');
-    escaped(json, hostile, |out, c| {
-        for unit in c.encode_utf16(&mut [0; 2]) {
-            write!(out, "\\u{unit:04x}").expect("writing to a String does not fail");
-        }
-    })
+    escaped(json, hostile, write_utf16_escapes)
+}
+
+/// JSON text with escapes for all characters outside ASCII, which old clients cannot decode.
+///
+/// # Example
+/// ```
+/// assert_eq!(driftworld_text::ascii_json("[\"ä🙂\"]"), r#"["\u00e4\ud83d\ude42"]"#);
+/// ```
+pub fn ascii_json(json: &str) -> Cow<'_, str> {
+    escaped(json, |c| !c.is_ascii(), write_utf16_escapes)
+}
+
+fn write_utf16_escapes(out: &mut String, c: char) {
+    for unit in c.encode_utf16(&mut [0; 2]) {
+        write!(out, "\\u{unit:04x}").expect("writing to a String does not fail");
+    }
 }
 
 /// Displays any value on one line like [`printable`], without a copy.

@@ -1,8 +1,7 @@
 //! Handles side channel messages of a session.
 
-use std::fmt::Write;
-
 use driftworld_env::{Channel, Outgoing, Received, Screenshot};
+use driftworld_text::ascii_json;
 
 use super::Session;
 use crate::observation::png;
@@ -180,8 +179,8 @@ impl Session {
             let remark = format!("{channel} channel: a message was refused: {texts}");
             self.remarks.make(About::Refusals, &remark);
         }
-        let text = ascii(&message.to_json());
-        self.outbox.push(id_of(message.channel), text_payload(&text));
+        let payload = text_payload(&ascii_json(&message.to_json()));
+        self.outbox.push(id_of(message.channel), payload);
     }
 }
 
@@ -197,22 +196,6 @@ fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     Ok(text)
 }
 
-/// Escapes non-ASCII characters of a JSON text, which old clients cannot decode.
-fn ascii(json: &str) -> String {
-    let mut text = String::with_capacity(json.len());
-    for c in json.chars() {
-        if c.is_ascii() {
-            text.push(c);
-        } else {
-            let mut units = [0; 2];
-            for unit in c.encode_utf16(&mut units) {
-                write!(text, "\\u{unit:04x}").expect("writing to a String does not fail");
-            }
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -220,7 +203,7 @@ mod tests {
     #[test]
     fn ascii_json_is_equivalent() {
         let json = r#"{"a":"20° – 𝄞\n"}"#;
-        let text = ascii(json);
+        let text = ascii_json(json);
         assert!(text.is_ascii(), "{text}");
         let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("the text is still valid JSON");
         assert_eq!(read(&text), read(json));
