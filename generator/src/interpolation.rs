@@ -1,8 +1,6 @@
 //! Interpolates between two values, and between two distributions.
 
-use driftworld_spec::{
-    ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Spread, Value, Variant,
-};
+use driftworld_spec::{ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Value, Variant};
 
 /// Interpolates between two values; `None` if that is impossible. `listed` says whether the domain is a list of choices.
 pub(crate) fn interpolate(
@@ -53,11 +51,13 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
             number
         });
         let mut ends = ends.into_iter();
-        let between = map(&from, |number| {
+        let mut between = map(&from, |number| {
             let end = ends.next().expect("equal skeletons have the same number of numbers");
             number + (end - number) * t
         });
-        return Some(with_colors_interpolated(with_rounded_counts(between), &from, &to, t));
+        round_counts(&mut between);
+        interpolate_colors(&mut between, &from, &to, t);
+        return Some(between);
     }
     let can_mix = if from.draws_cells() || to.draws_cells() {
         // Distributions of cells cannot be part of a mixture.
@@ -77,109 +77,69 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
 /// spread per channel, default ends written out.
 fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
     let each = |spread: &ChannelSpread| ChannelSpread::Each(spread.to_array());
-    match (distribution, other) {
-        (Distribution::ColorNormal { mean, std }, Distribution::ColorNormal { .. }) => Distribution::ColorNormal {
-            mean: mean.clone(),
-            std: each(std),
-        },
-        (
-            Distribution::ColorPerturb {
-                value,
-                noise,
-                low,
-                high,
-                channels,
-            },
-            Distribution::ColorPerturb { .. },
-        ) => Distribution::ColorPerturb {
-            value: value.clone(),
-            noise: each(noise),
-            low: Some(low.clone().unwrap_or(Channels([0.0; 3]))),
-            high: Some(high.clone().unwrap_or(Channels([1.0; 3]))),
-            channels: *channels,
-        },
-        (Distribution::ColorHsv { hue, saturation, value }, Distribution::ColorHsv { .. }) => Distribution::ColorHsv {
-            hue: hue.or(Some([0.0, 360.0])),
-            saturation: saturation.or(Some([0.0, 1.0])),
-            value: value.or(Some([0.0, 1.0])),
-        },
-        (Distribution::Gaussian { mean, .. }, Distribution::Gaussian { .. })
-            if skeleton(distribution) != skeleton(other) =>
-        {
-            Distribution::Gaussian {
-                mean: *mean,
-                std: None::<Spread>,
-                correlation: None,
-                covariance: distribution.gaussian_covariance(),
-            }
+    let mut own = distribution.clone();
+    match (&mut own, other) {
+        (Distribution::ColorNormal { std, .. }, Distribution::ColorNormal { .. }) => *std = each(std),
+        (Distribution::ColorPerturb { noise, low, high, .. }, Distribution::ColorPerturb { .. }) => {
+            *noise = each(noise);
+            low.get_or_insert(Channels([0.0; 3]));
+            high.get_or_insert(Channels([1.0; 3]));
         }
-        _ => distribution.clone(),
+        (Distribution::ColorHsv { hue, saturation, value }, Distribution::ColorHsv { .. }) => {
+            hue.get_or_insert([0.0, 360.0]);
+            saturation.get_or_insert([0.0, 1.0]);
+            value.get_or_insert([0.0, 1.0]);
+        }
+        (
+            Distribution::Gaussian {
+                std,
+                correlation,
+                covariance,
+                ..
+            },
+            Distribution::Gaussian { .. },
+        ) if skeleton(distribution) != skeleton(other) => {
+            (*std, *correlation) = (None, None);
+            *covariance = distribution.gaussian_covariance();
+        }
+        _ => {}
     }
+    own
 }
 
 /// Corrects an interpolated distribution of colours: colours are interpolated in Oklab, hues the shorter way round.
-fn with_colors_interpolated(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
+fn interpolate_colors(between: &mut Distribution, from: &Distribution, to: &Distribution, t: f64) {
     use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
-    let color = |a: &Channels, b: &Channels| {
-        if a == b {
+    let mix = |color: &mut Channels, a: &Channels, b: &Channels| {
+        *color = if a == b {
             a.clone()
         } else {
             Channels::from(Color(a.0).mix(Color(b.0), t))
-        }
+        };
     };
     match (between, from, to) {
-        (ColorUniform { channels, .. }, ColorUniform { from: a, to: b, .. }, ColorUniform { from: c, to: d, .. }) => {
-            ColorUniform {
-                from: color(a, c),
-                to: color(b, d),
-                channels,
-            }
+        (ColorUniform { from, to, .. }, ColorUniform { from: a, to: b, .. }, ColorUniform { from: c, to: d, .. }) => {
+            mix(from, a, c);
+            mix(to, b, d);
         }
-        (ColorNormal { std, .. }, ColorNormal { mean: a, .. }, ColorNormal { mean: b, .. }) => {
-            ColorNormal { mean: color(a, b), std }
+        (ColorNormal { mean: color, .. }, ColorNormal { mean: a, .. }, ColorNormal { mean: b, .. })
+        | (ColorPerturb { value: color, .. }, ColorPerturb { value: a, .. }, ColorPerturb { value: b, .. }) => {
+            mix(color, a, b);
         }
-        (
-            ColorPerturb {
-                noise,
-                low,
-                high,
-                channels,
-                ..
-            },
-            ColorPerturb { value: a, .. },
-            ColorPerturb { value: b, .. },
-        ) => ColorPerturb {
-            value: color(a, b),
-            noise,
-            low,
-            high,
-            channels,
-        },
-        (
-            ColorHsv { saturation, value, .. },
-            ColorHsv { hue: Some([a, b]), .. },
-            ColorHsv { hue: Some([c, d]), .. },
-        ) => {
+        (ColorHsv { hue, .. }, ColorHsv { hue: Some([a, b]), .. }, ColorHsv { hue: Some([c, d]), .. }) => {
             let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
             let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
             let (middle, half) = (middle + turn * t, 0.5 * ((b - a) + ((d - c) - (b - a)) * t));
             // Wraps into the range that documents allow, which is within one turn of 0..360.
             let middle = middle.rem_euclid(360.0);
-            ColorHsv {
-                hue: Some([middle - half, middle + half]),
-                saturation,
-                value,
+            *hue = Some([middle - half, middle + half]);
+        }
+        (Mixture { parts, .. }, Mixture { parts: a, .. }, Mixture { parts: b, .. }) => {
+            for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
+                interpolate_colors(part, a, b, t);
             }
         }
-        (Mixture { parts, weights }, Mixture { parts: a, .. }, Mixture { parts: b, .. }) => Mixture {
-            parts: parts
-                .into_iter()
-                .zip(a.iter().zip(b))
-                .map(|(part, (a, b))| with_colors_interpolated(part, a, b, t))
-                .collect(),
-            weights,
-        },
-        (other, ..) => other,
+        _ => {}
     }
 }
 
@@ -197,32 +157,12 @@ fn skeleton(distribution: &Distribution) -> Distribution {
 }
 
 /// Rounds the numbers that must be integers.
-fn with_rounded_counts(distribution: Distribution) -> Distribution {
+fn round_counts(distribution: &mut Distribution) {
     match distribution {
-        Distribution::IntegerUniform { low, high } => Distribution::IntegerUniform {
-            low: low.round(),
-            high: high.round(),
-        },
-        Distribution::Binomial { n, p } => Distribution::Binomial { n: n.round(), p },
-        Distribution::Grid {
-            low,
-            high,
-            columns,
-            rows,
-            jitter,
-            order,
-        } => Distribution::Grid {
-            low,
-            high,
-            columns: columns.round(),
-            rows: rows.round(),
-            jitter,
-            order,
-        },
-        Distribution::Mixture { parts, weights } => Distribution::Mixture {
-            parts: parts.into_iter().map(with_rounded_counts).collect(),
-            weights,
-        },
-        other => other,
+        Distribution::IntegerUniform { low, high } => (*low, *high) = (low.round(), high.round()),
+        Distribution::Binomial { n, .. } => *n = n.round(),
+        Distribution::Grid { columns, rows, .. } => (*columns, *rows) = (columns.round(), rows.round()),
+        Distribution::Mixture { parts, .. } => parts.iter_mut().for_each(round_counts),
+        _ => {}
     }
 }

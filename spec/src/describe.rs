@@ -12,39 +12,17 @@ pub(crate) fn describe(value: &Value) -> String {
         }
         Value::Array(items) if items.len() > 4 => format!("a list of {} values", items.len()),
         Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
-        Value::Object(_) if !fits(value, &mut 60) => "an object".to_owned(),
-        Value::Array(_) if !fits(value, &mut 60) => "a list".to_owned(),
+        Value::Object(_) if !is_short(value) => "an object".to_owned(),
+        Value::Array(_) if !is_short(value) => "a list".to_owned(),
         other => other.to_string(),
     }
 }
 
-/// Whether a value fits into `room` characters; stops at the first part that does not.
-fn fits(value: &Value, room: &mut usize) -> bool {
-    let mut take = |characters: usize| {
-        let fits = characters <= *room;
-        *room = room.saturating_sub(characters);
-        fits
-    };
-    match value {
-        Value::Array(items) => take(2 + items.len().saturating_sub(1)) && items.iter().all(|item| fits(item, room)),
-        Value::Object(map) => {
-            let commas = map.len().saturating_sub(1);
-            take(2 + commas + map.len()) && map.iter().all(|(key, value)| fits_text(key, room) && fits(value, room))
-        }
-        Value::String(text) => fits_text(text, room),
-        other => take(other.to_string().len()),
-    }
-}
-
-fn fits_text(text: &str, room: &mut usize) -> bool {
-    // Far too long to fit, so skip the escaping.
-    if text.len() > 4 * *room {
-        return false;
-    }
-    let characters = Value::from(text).to_string().chars().count();
-    let fits = characters <= *room;
-    *room = room.saturating_sub(characters);
-    fits
+/// Whether a value has at most 60 characters, found without writing all of a large one.
+fn is_short(value: &Value) -> bool {
+    // A character has at most 4 bytes.
+    let mut room = [0; 4 * 60];
+    serde_json::to_writer(&mut room[..], value).is_ok() && value.to_string().chars().count() <= 60
 }
 
 /// A number for messages; very large and very small numbers have an exponent.

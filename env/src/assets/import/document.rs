@@ -76,6 +76,7 @@ fn is_version_1(json: &str) -> bool {
 }
 
 #[derive(Deserialize)]
+#[expect(clippy::zero_sized_map_values, reason = "only that it is an object matters")]
 struct Version1 {
     #[serde(rename = "meshes")]
     _meshes: BTreeMap<String, IgnoredAny>,
