@@ -26,7 +26,7 @@ pub struct OrderRequest {
     #[arg(long, value_name = "ORDER")]
     #[serde(deserialize_with = "request::word")]
     pub order: Option<OrderWord>,
-    /// The method of the order, apart from `order`.
+    /// The ordering method, given separately from `order`.
     #[arg(skip)]
     #[serde(deserialize_with = "request::word")]
     pub method: Option<Method>,

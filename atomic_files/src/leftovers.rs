@@ -62,6 +62,6 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
 /// Opens a file to lock it, for writing where possible: some file systems can lock only files open for writing.
 fn open_to_lock(path: &Path) -> io::Result<File> {
     let for_writing = OpenOptions::new().read(true).write(true).open(path);
-    // Opened here, not by driftworld-files: it is only locked, never read, and its name shows that it is ours.
+    // Opened here, not through driftworld-files: it is only locked, never read, and its name shows that it is ours.
     for_writing.or_else(|_| File::open(path))
 }

@@ -28,7 +28,7 @@ impl ScratchFolder {
         let mut tries = 0;
         loop {
             let (folder, unfinished) = Unfinished::make(|| TempDir::with_prefix_in(prefix, parent), TempDir::path)?;
-            // Opened here, not by driftworld-files, which opens only regular files: this is a folder, opened to lock it.
+            // Opened here, not through driftworld-files: this is a folder, opened to lock it.
             let lock = fs::File::open(folder.path());
             let is_taken = match lock.as_ref().map(fs::File::try_lock) {
                 Err(_) | Ok(Err(TryLockError::WouldBlock)) => true,

@@ -225,7 +225,7 @@ fn check_in_log(file: &[u8]) {
         }
         Err(error) => {
             refusal::message(&error.to_string());
-            // Read directly, not by driftworld-files: the test itself created the file.
+            // Read directly, not through driftworld-files: the test itself created the file.
             let left = fs::read(&path).expect("the file exists");
             assert_eq!(left, file, "a refused file stays unchanged");
         }

@@ -143,7 +143,7 @@ fn type_of(own: &Json, value: &Json) -> String {
     if named.is_some_and(|name| name.ends_with("/Color")) {
         return "colour, `[r, g, b]` in 0..1 or a CSS name".to_owned();
     }
-    // Integers without a decimal point.
+    // As `f64`, so that whole limits are printed without a decimal point.
     let limits = |value: &Json| match [value["minimum"].as_f64(), value["maximum"].as_f64()] {
         [Some(low), Some(high)] => format!(" from {low} to {high}"),
         _ => String::new(),

@@ -139,7 +139,7 @@ mod system {
     /// The signals to handle; not SIGHUP if the parent process ignored it, as with `nohup`.
     fn signals() -> Vec<i32> {
         let mut signals = vec![SIGINT, SIGTERM];
-        // Read without driftworld-files: it is a system file, not one that a user names.
+        // Read directly, not through driftworld-files: it is a system file, not one that a user names.
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());

@@ -167,7 +167,7 @@ fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
 
 /// Resident memory of this process in kilobytes, on Linux.
 fn resident() -> Option<u64> {
-    // Read without driftworld-files: it is a system file, not one that a user names.
+    // Read directly, not through driftworld-files: it is a system file, not one that a user names.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
     line.split_whitespace().nth(1)?.parse().ok()

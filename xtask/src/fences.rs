@@ -19,7 +19,7 @@ const TOOL_FOLDERS: [&str; 1] = ["xtask/"];
 /// Pages on which every path in backticks belongs to this repository. Other pages also name their readers' files.
 const CHECKED_PAGES: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
 
-/// Calls that only one crate may make. An exception needs a comment `not by CRATE:` above it, with the reason.
+/// Calls that only one crate may make. An exception needs a comment `not through CRATE:` above it, with the reason.
 const RESERVED_CALLS: [(&str, &str, &str); 4] = [
     (
         "fs::read(",
@@ -128,7 +128,7 @@ fn reserved_calls(path: &str, text: &str) -> Vec<String> {
                 .iter()
                 .rev()
                 .take_while(|line| line.trim_start().starts_with("//"));
-            let reason = format!("not by driftworld-{home}:");
+            let reason = format!("not through driftworld-{home}:");
             if places.any(is_call)
                 && !path.starts_with(&format!("{home}/"))
                 && !comment.any(|line| line.contains(&reason))
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn reserved_calls_need_a_reason() {
-        let text = "//! A.\nlet a = std::fs::read(path);\n// Locked, not by driftworld-files: it is a folder.\nlet a = File::open(path);\n\
+        let text = "//! A.\nlet a = std::fs::read(path);\n// Locked, not through driftworld-files: it is a folder.\nlet a = File::open(path);\n\
                     let b = BlockFile::open(path.display().to_string());\nformat!(\"{}\", path.display());\n";
         check_files(&[("spec/src/a.rs", text)], &["spec/src/a.rs:2: ", "spec/src/a.rs:6: "]);
         check_files(&[("files/src/a.rs", text)], &["files/src/a.rs:6: "]);

@@ -56,8 +56,8 @@ impl Default for Experiment {
 impl Experiment {
     /// Finds the differences between the first and second worlds of pairs, with a witness for each element that differs.
     ///
-    /// Each pair runs twice per [`Policy`]: once the agent acts in the first world, and the second world is set to the same
-    /// state before every step; once the other way round. So the order of the two worlds does not matter. Pairs run in
+    /// Each pair runs twice per [`Policy`]. In one run the agent acts in the first world, and the second world is set to the
+    /// same state before every step; in the other run the worlds swap roles, so that their order does not matter. Pairs run in
     /// parallel; the findings depend only on the pairs and on these settings.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ pub(super) const NEUTRAL: u32 = 0x8080_8080;
 /// A pattern.
 #[derive(Debug)]
 pub(super) struct Tile {
-    /// Texels: a factor per channel, with 128 for 1; the highest byte is 128. The level with side s begins at s².
+    /// Texels: a factor per channel, with 128 for 1; the highest byte is 128, or 0 in clouds. The level with side s begins at s².
     pub(super) texels: Vec<u32>,
     /// Metres per side.
     pub(super) period: f32,

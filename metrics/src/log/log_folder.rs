@@ -132,7 +132,7 @@ pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) 
     if !cfg!(unix) {
         return Ok(None);
     }
-    // Opened directly, not through driftworld-files, which opens regular files only: this is a folder.
+    // Opened directly, not through driftworld-files: this is a folder, not a regular file.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),

@@ -35,8 +35,8 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        // Not `fs::copy`, which would keep the mode and ignore the umask. Opened directly, not
-        // through driftworld-files: these are the log's own files, just found.
+        // Not `fs::copy`, which would keep the mode and ignore the umask. Opened directly,
+        // not through driftworld-files: these are the log's own files, just found.
         let copied = fs::File::open(file).and_then(|mut from| {
             let mut to = fs::File::create(&target)?;
             std::io::copy(&mut from, &mut to)?;

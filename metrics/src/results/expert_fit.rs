@@ -34,8 +34,8 @@ pub struct ExpertFit {
     pub differences: Vec<String>,
 }
 
-/// Every expert that each task is compared with. If variants do not count, an expert has one variant and the task all of them,
-/// so no comparison is made.
+/// The experts that each task is compared with. Empty if variants do not count: an expert then covers one variant, but a task all
+/// of them.
 pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Vec<ExpertFit>> {
     if options.variant_mode == VariantMode::Agnostic {
         return IndexMap::new();

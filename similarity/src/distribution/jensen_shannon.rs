@@ -9,8 +9,8 @@ use super::overlap;
 
 /// The square root of [`jensen_shannon_divergence`].
 ///
-/// A metric in `0..=1`. Takes the same arguments at the same cost; by quadrature it is mostly known within 1e-6, the root of a
-/// sum known within 1e-9 or better. `scipy.spatial.distance.jensenshannon` is this root, but in nats unless `base=2`.
+/// A metric in `0..=1`. Takes the same arguments at the same cost. By quadrature it is usually accurate to within 1e-6, being the
+/// root of a sum accurate to within 1e-9. `scipy.spatial.distance.jensenshannon` is this root, but in nats unless `base=2`.
 ///
 /// Source: Endres & Schindelin 2003, "A new metric for probability distributions".
 ///

@@ -35,7 +35,7 @@ impl Reader {
             if let Some(Json::String(name)) = object.get("unique_name")
                 && !names.insert(name.clone())
             {
-                let text = format!("another object already has the name {name:?}; it is left out");
+                let text = format!("another object already has the name {name:?}; the name is left out");
                 self.warn(format!("{at}/unique_name"), text);
                 object.shift_remove("unique_name");
             }
@@ -88,7 +88,9 @@ impl Reader {
         let Some(model) = model.filter(|model| *model != "stationary" && !object.contains_key("speed")) else {
             return;
         };
-        let text = format!("{model} has no speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
+        let text = format!(
+            "{model} has no speed; {ASSUMED_SPEED} m/s is assumed; Driftworld's key \"speed\" sets another speed"
+        );
         self.warn(format!("{at}/motion_model"), text);
         object.insert("speed".into(), json!(ASSUMED_SPEED));
     }
