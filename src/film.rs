@@ -71,7 +71,7 @@ pub struct FilmOptions {
     /// What the agent's view shows; the map has no modalities.
     #[arg(long, value_enum, default_value_t = FilmModality::Rgb)]
     pub modality: FilmModality,
-    /// Frames per second [default: simulated time].
+    /// Frames per second [default: the film plays in simulated time].
     ///
     /// At most 50 in a GIF, 100 in an APNG: viewers show no more.
     #[arg(long, value_name = "RATE", value_parser = rate)]

@@ -46,12 +46,12 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
 
 fn count(word: &str) -> Result<u32, String> {
     let count = word.parse().ok().filter(|count| (1..=MAX_STEPS).contains(count));
-    count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MAX_STEPS}"))
+    count.ok_or_else(|| format!("found {word:?}, expected a number of steps, 1 to {MAX_STEPS}"))
 }
 
 pub(super) fn columns(word: &str) -> Result<u32, String> {
     let columns = word.parse().ok().filter(|columns| (8..=400).contains(columns));
-    columns.ok_or_else(|| format!("found {word:?}, expected how many columns, 8 to 400"))
+    columns.ok_or_else(|| format!("found {word:?}, expected a number of columns, 8 to 400"))
 }
 
 pub(super) fn category(word: &str) -> Result<Category, String> {

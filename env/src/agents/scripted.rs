@@ -21,7 +21,7 @@ const MAX_INTERACTIONS: u32 = 10;
 /// | `step [N] [A B C \| ROW]` | takes N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
 /// | `action [-c N] -a A B C \| ROW` | the same, with options |
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
-/// | `interact NAME [N]` | walks there and interacts until the object reacts |
+/// | `interact NAME [N]` | walks there and interacts until the object reacts, at most 10 times |
 /// | `near NAME METRES [N]` | walks there until its centre is nearer than METRES |
 /// | `tour [N]` | acts like [`OnRailsAgent`] until nothing worth visiting is left |
 /// | `repeat` | restarts the script; only as the last line |

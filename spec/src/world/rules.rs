@@ -108,7 +108,7 @@ fields! {
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "tag": "ball", "to": "box", "within": 2 }]))]
     pub struct Delivery {
-        /// Tag of the things. At least one must remain, and all that remain must lie there; carried things do not count.
+        /// Tag of the things. At least one must remain, and all that remain must lie there; carried ones remain, but not there.
         #[schemars(length(min = 1, max = 100))]
         pub tag: String => Field::ours(AsPart),
         /// Tag of the destination objects.

@@ -289,7 +289,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
         lines.push(format!(
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
              {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named if the {} of \
-             the IQM excludes no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
+             the IQM excludes the neutral value and, if there is a null, the mean over lifetimes is outside its band, with p at \
              most {MAX_P_VALUE}. no null: permuting evaluations does not test this metric.",
             if few { &t } else { share }
         ));
