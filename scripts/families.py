@@ -205,7 +205,8 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], descriptions
         first = next(iter(measured))
         lines += [
             f"![Learning curves of {name}](../images/families/{name}.svg)", "",
-            f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`. After training, for each seed, with sampled actions:", "",
+            f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`.",
+            "After training, for each seed, with sampled actions:", "",
             result_lines(runs, measured[first]), "",
         ]  # fmt: skip
     lines += [

@@ -116,7 +116,7 @@ fields! {
         pub respawn: Option<Respawn> = None => Field::ours(Leaves(Bodies)),
         /// Seed of the object's own random numbers, so that they do not depend on other objects or their order. Sampled objects
         /// get a seed derived from their group's name and their number in the group. If absent, the seed is derived from the
-        /// object's starting position. Objects with the same seed are told apart by their order.
+        /// object's starting position. Objects with the same seed are distinguished by their order.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None => Field::ours(Not("two worlds that differ only in their seeds are two runs of one world")),
