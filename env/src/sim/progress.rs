@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, World};
+use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, RailsProgress, World};
 
-use super::environment::Environment;
 use super::mover::Mover;
+use super::rng::Seed;
 use super::sim_ref::SimRef;
 use super::state::{SimState, entry, wrapped};
 use super::views::Views;
-use crate::agents::OnRailsAgent;
 
 /// The progress of a saved world, after the world itself has been restored to its start.
 pub(super) struct ResumeState {
@@ -19,82 +18,64 @@ pub(super) struct ResumeState {
     objects: Vec<([f32; 2], f32, f64)>,
 }
 
-impl Environment {
-    /// The current state of the world as a document: objects at their current positions with their remaining rewards, and in
-    /// `progress` everything else that a reset needs to resume.
-    ///
-    /// Includes destroyed objects, so that indices stay the same; their progress marks them as absent.
-    ///
-    /// # Example
-    /// ```
-    /// use driftworld_env::{Action, Environment};
-    /// use driftworld_spec::World;
-    /// let mut environment = Environment::new(World::default());
-    /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
-    /// let json = environment.state().to_json();
-    /// let read = World::from_json("state", &json).expect("a state is a valid world");
-    /// assert_eq!(Environment::new(read).agent(), environment.agent());
-    /// # Ok::<(), driftworld_env::EnvError>(())
-    /// ```
-    pub fn state(&self) -> World {
-        let sim = self.sim();
-        let mut world = sim.world.clone().into_draft();
-        let agent = sim.agent();
-        let start = &world.agent_params;
-        let now = self.agent_now();
-        let origin = (now.coordinates != start.coordinates || now.heading != start.heading).then_some(Origin {
-            coordinates: start.coordinates,
-            heading: start.heading,
-            reward: 0.0,
-        });
-        world.agent_params = now;
-        let objects = world
-            .objects
-            .iter_mut()
-            .enumerate()
-            .map(|(index, object)| save_object(sim, index, object))
-            .collect();
-        let state = sim.state;
-        world.progress = Some(Progress {
-            seed: self.seed.hash().map(str::to_owned),
-            steps: state.steps,
-            ticks: state.ticks,
-            episode_return: state.earned,
-            unshaped_return: state.unshaped,
-            last_reward: state.last_reward,
-            last_event: state.last_event,
-            ended: state.ended,
-            velocity: agent.velocity.map(f64::from),
-            origin,
-            zones: sim.views.zones.entered(state),
-            energy: sim.world.agent_params.energy.map(|_| state.energy),
-            former_draws: None,
-            rails: self.rails.as_ref().map(OnRailsAgent::progress),
-            objects,
-            carried: state.carried.clone(),
-        });
-        world.check_in_range().expect("a step keeps a valid world valid")
-    }
+/// The current state of a world as a document; see [`Environment::state`](super::Environment::state).
+pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -> World {
+    let mut world = sim.world.clone().into_draft();
+    let agent = sim.agent();
+    let start = &world.agent_params;
+    let now = agent_now(sim);
+    let origin = (now.coordinates != start.coordinates || now.heading != start.heading).then_some(Origin {
+        coordinates: start.coordinates,
+        heading: start.heading,
+        reward: 0.0,
+    });
+    world.agent_params = now;
+    let objects = world
+        .objects
+        .iter_mut()
+        .enumerate()
+        .map(|(index, object)| save_object(sim, index, object))
+        .collect();
+    let state = sim.state;
+    world.progress = Some(Progress {
+        seed: seed.hash().map(str::to_owned),
+        steps: state.steps,
+        ticks: state.ticks,
+        episode_return: state.earned,
+        unshaped_return: state.unshaped,
+        last_reward: state.last_reward,
+        last_event: state.last_event,
+        ended: state.ended,
+        velocity: agent.velocity.map(f64::from),
+        origin,
+        zones: sim.views.zones.entered(state),
+        energy: sim.world.agent_params.energy.map(|_| state.energy),
+        former_draws: None,
+        rails,
+        objects,
+        carried: state.carried.clone(),
+    });
+    world.check_in_range().expect("a step keeps a valid world valid")
+}
 
-    /// The world's agent at its current position and heading; bit for bit as in the world if these are its start.
-    pub(crate) fn agent_now(&self) -> AgentParams {
-        let agent = self.agent();
-        let mut now = self.world.agent_params.clone();
-        let is_unchanged = now.coordinates.map(|metres| metres as f32) == agent.position
-            && wrapped(now.heading as f32) == agent.heading_deg;
-        if !is_unchanged {
-            now.coordinates = agent.position.map(f64::from);
-            now.heading = f64::from(agent.heading_deg);
-        }
-        now
+/// The world's agent at its current position and heading; bit for bit as in the world if these are its start.
+pub(super) fn agent_now(sim: SimRef) -> AgentParams {
+    let agent = sim.agent();
+    let mut now = sim.world.agent_params.clone();
+    let is_unchanged = now.coordinates.map(|metres| metres as f32) == agent.position
+        && wrapped(now.heading as f32) == agent.heading_deg;
+    if !is_unchanged {
+        now.coordinates = agent.position.map(f64::from);
+        now.heading = f64::from(agent.heading_deg);
     }
+    now
+}
 
-    /// A world's object at its current position, with its remaining reward.
-    pub(crate) fn object_now(&self, index: usize) -> Object {
-        let mut now = self.world.objects[index].clone();
-        apply_current_state(self.sim(), index, &mut now);
-        now
-    }
+/// A world's object at its current position, with its remaining reward.
+pub(super) fn object_now(sim: SimRef, index: usize) -> Object {
+    let mut now = sim.world.objects[index].clone();
+    apply_current_state(sim, index, &mut now);
+    now
 }
 
 /// Sets an object's current position, heading and reward; returns the original ones if any of them differs.

@@ -1,11 +1,12 @@
-//! Saves the state of a running world in memory, as a [`Snapshot`], and restores it.
+//! Saves the state of a running world, in memory as a [`Snapshot`] or as a world document, and restores snapshots.
 
 use std::fmt;
 use std::sync::Arc;
 
-use driftworld_spec::World;
+use driftworld_spec::{AgentParams, Object, World};
 
 use super::environment::Environment;
+use super::progress::{agent_now, object_now, to_world};
 use super::rng::Seed;
 use super::state::SimState;
 use crate::agents::OnRailsAgent;
@@ -40,7 +41,7 @@ impl Environment {
     /// # Example
     /// ```
     /// use driftworld_env::{Action, Environment};
-    /// use driftworld_spec::World;
+    /// use driftworld_spec::{AgentParams, Object, World};
     /// let mut environment = Environment::new(World::default());
     /// let start = environment.snapshot();
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
@@ -67,5 +68,35 @@ impl Environment {
         self.state.clone_from(&snapshot.state);
         self.rails.clone_from(&snapshot.rails);
         self.views.sync_objects(&self.world, &self.state);
+    }
+
+    /// The current state of the world as a document: objects at their current positions with their remaining rewards, and in
+    /// `progress` everything else that a reset needs to resume.
+    ///
+    /// Includes destroyed objects, so that indices stay the same; their progress marks them as absent.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::{Action, Environment};
+    /// use driftworld_spec::World;
+    /// let mut environment = Environment::new(World::default());
+    /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
+    /// let json = environment.state().to_json();
+    /// let read = World::from_json("state", &json).expect("a state is a valid world");
+    /// assert_eq!(Environment::new(read).agent(), environment.agent());
+    /// # Ok::<(), driftworld_env::EnvError>(())
+    /// ```
+    pub fn state(&self) -> World {
+        to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
+    }
+
+    /// The world's agent at its current position and heading; bit for bit as in the world if these are its start.
+    pub(crate) fn agent_now(&self) -> AgentParams {
+        agent_now(self.sim())
+    }
+
+    /// A world's object at its current position, with its remaining reward.
+    pub(crate) fn object_now(&self, index: usize) -> Object {
+        object_now(self.sim(), index)
     }
 }
