@@ -18,8 +18,9 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::covered::covered_in;
-use crate::document::{Whole, from_python, to_py};
+use crate::document::Whole;
 use crate::errors::{Error, Result, wrong};
+use crate::json::{from_python, to_py};
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 use crate::supply::{PyStream, Stream};

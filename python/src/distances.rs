@@ -16,9 +16,10 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::classes::catalogue;
-use crate::document::{Whole, to_py};
+use crate::document::Whole;
 use crate::errors::{Result, wrong};
 use crate::interruptible::{run_cancellable, run_detached};
+use crate::json::to_py;
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 

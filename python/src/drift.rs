@@ -5,8 +5,9 @@ use driftworld_spec::{DriftSchedule, RegimeDrift};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::document::{Whole, from_python};
+use crate::document::Whole;
 use crate::errors::Result;
+use crate::json::from_python;
 use crate::rounding::usually_rounded;
 use crate::task::specs;
 use crate::variant::PyVariant;

@@ -4,9 +4,9 @@ use driftworld::elements::{ElementsRequest, elements_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::document::to_py;
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
+use crate::json::to_py;
 use crate::options::Options;
 use crate::task::PyTask;
 

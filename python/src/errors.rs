@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::json;
 
-use crate::document::to_py;
+use crate::json::to_py;
 
 /// An error to be raised in Python.
 #[derive(Debug)]

@@ -16,6 +16,7 @@ mod elements;
 mod errors;
 mod files;
 mod interruptible;
+mod json;
 mod logs;
 mod options;
 mod overrides;
@@ -43,10 +44,11 @@ mod native {
         curriculum::{PyJournal, PyPlan},
         design::design_curriculum,
         distances::{PyMatrix, compared_by, distance, order_methods, removed_format},
-        document::{check, parsed},
+        document::check,
         drift::PyDrift,
         elements::elements,
         files::{read_file, write_file},
+        json::parsed,
         logs::{PyLogFile, read_log, validate_log},
         options::requests,
         recordings::{PyRecording, png, read_recording},

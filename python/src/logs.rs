@@ -15,8 +15,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Map, Value, json};
 
-use crate::document::{Whole, from_python, to_py};
+use crate::document::Whole;
 use crate::errors::{Result, wrong};
+use crate::json::{from_python, to_py};
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 

@@ -17,8 +17,8 @@ use pyo3::types::{PyDict, PyString};
 use serde::de::value::{MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, Expected, IntoDeserializer, Visitor};
 
-use crate::document::from_python;
 use crate::errors::{Error, Result};
+use crate::json::from_python;
 
 /// Keyword arguments; `None` means not given.
 pub(crate) struct Options<'py> {

@@ -15,8 +15,9 @@ use pyo3::types::{PyBytes, PyTuple};
 use serde_json::json;
 
 use crate::classes::catalogue;
-use crate::document::{Whole, to_py};
+use crate::document::Whole;
 use crate::errors::{Error, Result, wrong};
+use crate::json::to_py;
 use crate::rounding::detach;
 
 /// Maximum bytes of frames per call.

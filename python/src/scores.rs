@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
 
-use crate::document::to_py;
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
+use crate::json::to_py;
 use crate::options::Options;
 use crate::rounding::detach;
 

@@ -9,8 +9,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::document::{Whole, from_python, parsed, to_py};
+use crate::document::Whole;
 use crate::errors::Result;
+use crate::json::{from_python, parsed, to_py};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 

@@ -11,9 +11,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::distances::element;
-use crate::document::{Whole, from_python, parsed, to_py};
+use crate::document::Whole;
 use crate::errors::{Result, wrong};
 use crate::interruptible::run_detached;
+use crate::json::{from_python, parsed, to_py};
 use crate::portions::{draw, numbers};
 use crate::rounding::{detach, usually_rounded};
 use crate::task::{PyTask, hash_of, specs};
