@@ -33,7 +33,27 @@ pub(crate) fn regrets(expertise: &Expertise, worlds: [&World; 2], own: [ExpertRu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use driftworld_spec::{Object, Stimulus, WorldDraft};
+
     use crate::{generator, tasks};
+
+    /// The trap's expert keeps away from a cube that pays in one world and costs in the other; the first world's touches it.
+    #[test]
+    fn regret_is_the_advantage_of_the_worlds_own_expert() {
+        let expertise = Expertise::default();
+        let mut cube = Object::new("geometric", [0.0, 8.0]);
+        cube.reward = 10.0;
+        cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
+        let mut world = WorldDraft::with_objects(vec![cube]);
+        world.max_steps = 50;
+        let home = world.check().expect("the world is valid");
+        let trap = home.clone().edit(|world| world.objects[0].reward = -30.0);
+        let worlds = [&home, &trap.expect("the world is valid")];
+        let own = worlds.map(|world| expertise.at_home(world).expect("it can be run"));
+        assert_eq!(own.map(|run| run.earned), [10.0, 0.0]);
+        let found = regrets(&expertise, worlds, own).expect("both can be run");
+        assert_eq!(found, [10.0, 30.0, 0.0]);
+    }
 
     #[test]
     fn regrets_are_0_at_home_and_swap_with_the_worlds() {

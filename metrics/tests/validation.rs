@@ -165,7 +165,10 @@ fn row_instead_of_the_header_is_reported_briefly() {
     let (problems, _, _) = validate(&[("w/0-train", header)], "1.1");
     assert_eq!(problems.len(), 8, "{problems:?}");
     for problem in problems {
-        assert!(problem.contains("and 881 more, expected "), "{problem}");
+        assert!(
+            problem.contains("and 881 more, expected ") && problem.ends_with(" as well"),
+            "{problem}"
+        );
         assert!(problem.chars().count() < 600, "{problem}");
     }
 }

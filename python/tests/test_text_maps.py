@@ -118,10 +118,15 @@ def test_name_above_a_grid_is_skipped(maps: ModuleType) -> None:
         assert world["environment_params"]["layout"]["text"] == ["###", "#A#", "###"]
 
 
-@pytest.mark.parametrize("text", ["", "\n\n", "***\n***\n", "Dear all,\nhere is the map that I promised.\n"])
-def test_text_that_is_not_a_map_is_refused(maps: ModuleType, text: str) -> None:
-    with pytest.raises(SystemExit, match="expected (a letter|at least one letter)"):
+@pytest.mark.parametrize("text", ["", "\n\n", "***\n***\n"])
+def test_map_without_floor_is_refused(maps: ModuleType, text: str) -> None:
+    with pytest.raises(SystemExit, match="found no free cell, expected at least one letter for floor"):
         maps.dmlab("letter.txt", text)
+
+
+def test_text_that_is_not_a_map_is_refused(maps: ModuleType) -> None:
+    with pytest.raises(SystemExit, match="33 of 34 cells are not recognised, expected a letter for each cell"):
+        maps.dmlab("letter.txt", "Dear all,\nhere is the map that I promised.\n")
 
 
 def test_objects_are_at_their_letters(maps: ModuleType) -> None:

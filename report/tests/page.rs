@@ -328,7 +328,9 @@ fn sleep_blocks_are_counted_consistently_and_mentioned() {
     let blocks = "<td class=\"number\">6</td><td class=\"number\">180</td>";
     assert_eq!(count(&page, blocks), 3, "the table of tasks");
     assert!(page.contains("Sleep blocks are drawn like the others: 9 of learning, 0 of evaluation."));
-    assert!(page.contains("This lifetime has sleep phases: evaluations while awake are drawn, but do not count"));
+    assert!(
+        page.contains("This lifetime has sleep phases: evaluations while awake are drawn, but do not count towards")
+    );
     assert!(!Life::default().run().page().contains("sleep"));
 }
 
