@@ -126,13 +126,15 @@ def write_sources(folder: Path) -> None:
         if path.startswith("docs/"):
             return path.removeprefix("docs/")
         full = ROOT / path
-        shown = folder / "files" / f"{path}.txt"
+        # mdBook takes any link with `.md` in it for a page's.
+        name = f"files/{path.removesuffix('.md')}.txt"
+        shown = folder / name
         shown.parent.mkdir(parents=True, exist_ok=True)
         if full.is_dir():
             shown.write_text("\n".join(sorted(each.name for each in full.iterdir() if each.name[0] not in "._")))
         else:
             shutil.copyfile(full, shown)
-        return f"files/{path}.txt"
+        return name
 
     shutil.copytree(ROOT / "docs", folder, ignore=shutil.ignore_patterns("*.md"))
     for path, text in {"docs/SUMMARY.md": summary, **pages}.items():

@@ -59,3 +59,13 @@ def test_links_are_adapted_to_the_book(book: Any) -> None:
     page = "[a](../docs/worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
     assert book.adapted(page, "examples/README.md", book.place) == "[a](../../worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
     assert book.place("docs/how-to/README.md") == "how-to/index.md"
+
+
+def test_links_with_md_in_them_lead_to_pages(book: Any, tmp_path: Path) -> None:
+    """mdBook takes them for links to pages, and writes `.html` in place of `.md` and all after it."""
+    book.write_sources(tmp_path / "src")
+    for page in (tmp_path / "src").rglob("*.md"):
+        for link in book.links(page.read_text(encoding="utf-8")):
+            file = link[0].partition("#")[0]
+            if ".md" in file and "://" not in file:
+                assert file.endswith(".md") and (page.parent / file).exists(), f"{page}: {link[0]}"
