@@ -12,7 +12,7 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Element, TaskSpec, Value, Variant, World};
 
 pub use optimum::Optimum;
-pub use outcome::{Contradiction, ElementsOutcome, InVain, Measured, VariantElements, Verdict};
+pub use outcome::{Contradiction, ElementsOutcome, Measured, Unmeasured, VariantElements, Verdict};
 pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS};
 
 use crate::{Failure, libraries, tasks};
@@ -57,7 +57,7 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
     trial.compare_all(&variants, &mut outcome, Trial::test_variant)?;
     // Only the full set of variants can show that a parameter never has a declared effect.
     if variants.len() == task.variant_names().len() {
-        outcome.note_in_vain(task);
+        outcome.note_unmeasured(task);
     }
     Ok(outcome)
 }

@@ -27,12 +27,12 @@ pub struct ElementsOutcome {
     pub variants: Vec<VariantElements>,
     /// Effects that parameters declare but none of the variants shows.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
-    pub in_vain: Vec<InVain>,
+    pub unmeasured: Vec<Unmeasured>,
 }
 
 /// Elements that a parameter declares, but that differed in none of the variants that change it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct InVain {
+pub struct Unmeasured {
     /// The parameter.
     pub parameter: String,
     /// The elements.
@@ -114,7 +114,7 @@ impl ElementsOutcome {
             seed: request.seed,
             steps: request.steps,
             variants: Vec::new(),
-            in_vain: Vec::new(),
+            unmeasured: Vec::new(),
         }
     }
 
@@ -131,12 +131,12 @@ impl ElementsOutcome {
 
     /// Parameters that a variant sets without effect, and elements that a parameter declares in vain, as sentences.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.idle().chain(self.declared_in_vain())
+        self.idle().chain(self.only_declared())
     }
 
     /// Records the effects that a task's parameters declare but none of its variants shows. Skips variants whose states differ, or
     /// in which nothing differs: they allow no such conclusion.
-    pub(super) fn note_in_vain(&mut self, task: &TaskSpec) {
+    pub(super) fn note_unmeasured(&mut self, task: &TaskSpec) {
         for (name, parameter) in task.parameters() {
             let is_relevant = |variant: &&VariantElements| {
                 let measured = variant.elements();
@@ -150,7 +150,7 @@ impl ElementsOutcome {
             };
             let elements: Vec<Element> = parameter.affects.iter().copied().filter(|one| !differed(one)).collect();
             if !relevant.is_empty() && !elements.is_empty() {
-                self.in_vain.push(InVain {
+                self.unmeasured.push(Unmeasured {
                     parameter: name.clone(),
                     elements,
                     variants: relevant.iter().map(|variant| variant.variant.clone()).collect(),
@@ -159,8 +159,8 @@ impl ElementsOutcome {
         }
     }
 
-    fn declared_in_vain(&self) -> impl Iterator<Item = String> {
-        self.in_vain.iter().map(|vain| {
+    fn only_declared(&self) -> impl Iterator<Item = String> {
+        self.unmeasured.iter().map(|vain| {
             let letters: Vec<&str> = vain.elements.iter().map(|element| element.letter()).collect();
             format!(
                 "{}: {} declares {}, which differed from {} in none of the variants that change it ({}): remove it from \"affects\"; \
