@@ -103,7 +103,7 @@ pub struct Sample {
     /// The measure; by default the one declared by the variants' common task (parameters if it declares none), else worlds.
     pub by: Option<By>,
     /// Worlds per side, from 1; by default [`NUM_WORLDS`], [`NUM_SLOW_WORLDS`] by pictures and dynamics,
-    /// [`NUM_PLACED_WORLDS`] by placements. If given, [`between`] never defaults to parameters.
+    /// [`NUM_PLACED_WORLDS`] by placements. If given, the default is never parameters.
     pub worlds: Option<u64>,
     /// The seed; default 0.
     pub seed: u64,
@@ -145,6 +145,14 @@ impl Sample {
             by: Some(by),
             ..Self::default()
         }
+    }
+
+    /// The measure: the requested one, or else the `usual` one, but never parameters if a number of worlds is given.
+    pub(crate) fn measure(&self, usual: By) -> By {
+        self.by.unwrap_or(match usual {
+            By::Parameters if self.worlds.is_some() => By::Worlds,
+            usual => usual,
+        })
     }
 
     /// Refuses [`Scale::Share`] for a measure without a diameter.
@@ -248,13 +256,7 @@ pub fn between(
     };
     let weights = reweigh(task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task())))?;
     let weights_text = weights_note(&weights);
-    let by = sample.by.unwrap_or(match (task, sample.worlds) {
-        (Some((a, _)), worlds) => match a.task().compare_by() {
-            By::Parameters if worlds.is_some() => By::Worlds,
-            declared => declared,
-        },
-        (None, _) => By::Worlds,
-    });
+    let by = sample.measure(task.map_or(By::Worlds, |(a, _)| a.task().compare_by()));
     if by == By::Parameters {
         let Some((a, b)) = task else {
             return Err(DistancesError::By {

@@ -37,7 +37,7 @@ pub struct OrderRequest {
     #[arg(long, value_name = "VARIANT")]
     pub end: Option<String>,
     /// Step between neighbours for the order target-step.
-    #[arg(long, value_name = "DISTANCE")]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
     pub target_step: Option<f64>,
 }
 

@@ -80,8 +80,7 @@ pub fn variant_matrix_while(
                 expected: MEASURE_REQUIRED,
             });
         }
-        (Some(by), _) => by,
-        (None, task) => task.map_or(By::Parameters, |task| task.compare_by()),
+        (_, task) => sample.measure(task.map_or(By::Parameters, |task| task.compare_by())),
     };
     // Check the labels before drawing worlds.
     DistanceMatrix::check_labels(&labels)?;

@@ -95,3 +95,33 @@ fn placements_are_measured_after_rejections() {
     assert_eq!(between("find_objects#red", "find_objects#blue"), 0.0);
     assert!(between("find_objects#red", "find_objects#wide") > 0.0);
 }
+
+#[test]
+fn comparison_of_methods_starts_as_each_method_alone_does() {
+    let folder = scratch();
+    for named in [
+        "find_objects#red blue dusk penalty",
+        "find_objects#red blue dusk --end blue",
+        "find_objects",
+    ] {
+        let all = json_in(folder.path(), &format!("order {named} --compare --json"));
+        for found in all
+            .as_array()
+            .expect("a list of methods")
+            .iter()
+            .filter(|found| found.get("error").is_none())
+        {
+            let method = found["method"].as_str().expect("each has a name");
+            let alone = json_in(folder.path(), &format!("order {named} --order {method} --json"));
+            assert_eq!(found["order"], alone["order"], "{named}: {method}");
+        }
+    }
+}
+
+#[test]
+fn number_of_worlds_rules_out_parameters_in_orders_as_in_distances() {
+    let folder = scratch();
+    let order = json_in(folder.path(), "order find_objects#red dusk --worlds 2 --json");
+    let distance = json_in(folder.path(), "distance find_objects#red dusk --worlds 2 --json");
+    assert_eq!((&order["by"], &order["length"]), (&"worlds".into(), &distance["total"]));
+}

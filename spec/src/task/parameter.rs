@@ -449,6 +449,9 @@ impl Parameter {
         }
         let has_fraction = low.fract() != 0.0 || high.fract() != 0.0;
         let expected = match self.kind {
+            ParameterType::Heading if low >= high => {
+                "the low end below the high end; an arc across north is [300, 420]"
+            }
             _ if low >= high => "the low end below the high end",
             ParameterType::Integer if has_fraction => "whole numbers at both ends",
             ParameterType::Heading if high - low > 360.0 => "an arc of at most 360 degrees",

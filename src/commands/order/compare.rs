@@ -1,6 +1,6 @@
 //! Compares all methods on one matrix.
 
-use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
+use crate::similarity::{DistanceMatrix, Method, Ordering};
 use serde_json::{Value, json};
 
 use crate::table::table;
@@ -11,16 +11,12 @@ pub(super) struct Comparison {
 }
 
 impl Comparison {
-    pub(super) fn new(matrix: &DistanceMatrix, options: &OrderOptions) -> Self {
-        let outcome = |method: Method| {
-            let found = order(matrix, method, options).map_err(|error| error.to_string());
-            (method, found)
-        };
-        // Target steps are compared only if a length is given.
-        let is_compared = |method: &Method| *method != Method::TargetStep || options.target_step.is_some();
+    /// Target steps are compared only if a length is given.
+    pub(super) fn new(has_target_step: bool, order: impl Fn(Method) -> Result<Ordering, String>) -> Self {
+        let is_compared = |method: &Method| *method != Method::TargetStep || has_target_step;
         let methods = Method::ALL.iter().copied().filter(is_compared);
         Self {
-            outcomes: methods.map(outcome).collect(),
+            outcomes: methods.map(|method| (method, order(method))).collect(),
         }
     }
 

@@ -5,7 +5,7 @@ mod compare;
 use std::path::PathBuf;
 
 use crate::distances::{By, Sample, Scale, fitting, variant_matrix};
-use crate::ordering::OrderRequest;
+use crate::ordering::{OrderRequest, OrderWord};
 use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
@@ -49,7 +49,7 @@ pub(crate) struct Order {
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "from_matrix")]
     by: Option<By>,
     /// Compare this many worlds of each variant, drawn under seed 0 [default: 16; 4 by pictures and
-    /// dynamics, 64 by placements].
+    /// dynamics, 64 by placements]. Without --by, never by parameters.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), conflicts_with = "from_matrix")]
     worlds: Option<u64>,
     /// Unit of distances by parameters: units (1 is one parameter over its whole range) or share (of the task's diameter).
@@ -146,14 +146,22 @@ impl Order {
             .zip(variants.iter().map(|(_, variant)| variant.clone()))
             .collect();
         let matrix = variant_matrix(&labelled, &sample, |declared| self.weights.over(declared))?;
-        let by = self
-            .by
-            .unwrap_or_else(|| fitting(variants.iter().map(|(_, variant)| variant)));
+        let by = sample.measure(fitting(variants.iter().map(|(_, variant)| variant)));
         Ok((matrix, Some(by)))
     }
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
-        let comparison = Comparison::new(matrix, &self.ordering.labelled().options(matrix, self.seed)?);
+        let asked = self.ordering.labelled();
+        asked.options(matrix, self.seed)?;
+        let comparison = Comparison::new(asked.target_step.is_some(), |method| {
+            let request = OrderRequest {
+                order: Some(OrderWord::Method(method)),
+                target_step: asked.target_step.filter(|_| method == Method::TargetStep),
+                ..asked.clone()
+            };
+            let found = request.order_from(matrix, self.seed, &self.tasks);
+            found.map(|(_, ordering)| ordering).map_err(|error| error.for_command())
+        });
         if self.json {
             return output::json(&comparison.json(matrix, self.seed));
         }
