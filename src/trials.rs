@@ -73,8 +73,8 @@ pub(crate) fn summary(trials: &[Trial]) -> Option<String> {
     (failed > 0).then(|| format!("{failed} of {worlds} worlds cannot be drawn"))
 }
 
-/// The worlds in which the planner missed a possible success; `None` if it missed none.
-pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
+/// The worlds in which the planner missed a possible success, of the task in this file; `None` if it missed none.
+pub(crate) fn unfinished(trial: &Trial, file: &str) -> Option<String> {
     let expert = trial
         .expert
         .as_ref()
@@ -86,9 +86,10 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
         ""
     };
     let (variant, seed) = (&trial.variant, trial.seed);
+    let own = variant.rsplit('#').next().unwrap_or_default();
     Some(format!(
         "{variant}: the planner succeeded in {} of {} worlds, but not in {}{more}; look at one: driftworld render \
-         '{variant}' --seed {seed} --index {} -o world.png",
+         '{file}#{own}' --seed {seed} --index {} -o world.png",
         expert.succeeded,
         expert.worlds,
         listed.join(", "),

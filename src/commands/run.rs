@@ -113,6 +113,11 @@ impl Run {
 
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.refuse_task()?;
+        if output::is_stdout(&self.output) {
+            return Err(Failure::usage(
+                "--output: found standard output, expected a folder for the log",
+            ));
+        }
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // L2Explorer's own scenario names a map that L2Explorer does not include, and must run unchanged.
         let stand_in = self.stand_in || (file.original && !self.no_stand_in);

@@ -1,7 +1,7 @@
 //! `driftworld sample`: draws one or many worlds of a variant, or a shard of them.
 
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::design::Mix;
@@ -10,6 +10,7 @@ use crate::spec::{DriftSchedule, Variant, World};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
+use driftworld_text::counted;
 use rayon::prelude::*;
 
 use super::assets::LibraryChoice;
@@ -79,7 +80,7 @@ pub(crate) struct Sample {
     /// Write one world per line instead of indented files.
     #[arg(long)]
     jsonl: bool,
-    /// File, folder for several worlds, or - for standard output.
+    /// File, folder for several worlds, or - for standard output. A name that ends in .json or .jsonl is a file's.
     #[arg(short, long, default_value = "-", value_name = "PATH")]
     output: PathBuf,
     /// Print what was written as JSON.
@@ -155,10 +156,12 @@ impl Sample {
         if self.jsonl {
             return self.stream(&draw, range);
         }
-        if self.count.is_none() {
+        let is_json = |ending| ending == "json" || ending == "jsonl";
+        let is_one_file = output::is_stdout(&self.output) || self.output.extension().is_some_and(is_json);
+        if self.count.is_none() || (is_one_file && count == 1 && self.shard.is_none()) {
             return output::write_or_print(&self.output, &(draw(self.index)?.to_json() + "\n"));
         }
-        if self.output == Path::new("-") {
+        if is_one_file {
             return Err(Failure::usage(
                 "found several worlds for one document, expected a folder (-o DIR), or one world per line (--jsonl)",
             ));
@@ -236,7 +239,7 @@ impl Sample {
             written.map_err(|error| self.failed(&error))
         })?;
         self.commit(file)?;
-        output::wrote(&self.output, format!("{count} worlds"));
+        output::wrote(&self.output, counted(count as usize, "world"));
         Ok(())
     }
 
@@ -246,7 +249,7 @@ impl Sample {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
         })?;
-        output::wrote(&self.output, format!("{count} worlds"));
+        output::wrote(&self.output, counted(count as usize, "world"));
         Ok(())
     }
 }

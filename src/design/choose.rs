@@ -51,6 +51,17 @@ pub enum Evidence {
 }
 
 impl Chosen {
+    /// What the distances are, such as "by parameters" or, of a probe, "in reward".
+    pub(crate) fn measure(&self) -> String {
+        match &self.evidence {
+            Some(Evidence::Probe { element, .. }) => format!("in {}", element.name()),
+            Some(Evidence::Steps { wanted, .. }) if let Some(element) = wanted.element => {
+                format!("in {}", element.name())
+            }
+            _ => format!("by {}", self.by.name()),
+        }
+    }
+
     /// The variants in an order.
     pub(super) fn in_order(&self, order: &[usize]) -> Vec<Choice> {
         order.iter().map(|index| self.variants[*index].clone()).collect()

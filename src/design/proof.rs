@@ -5,7 +5,7 @@ use driftworld_spec::{Element, Modality, ProvenVariant, ScenarioProof, Variant};
 
 use super::{Chosen, DesignRequest, Evidence};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_among};
-use crate::{Failure, argument};
+use crate::{Failure, argument, tasks};
 
 /// Number of pairs of worlds tested per variant.
 const NUM_WORLDS: u64 = 8;
@@ -41,13 +41,13 @@ impl DesignRequest {
             ..ElementsRequest::of(base.task().name())
         };
         let found = elements_among(&variants, &request)?;
-        refuse_others(&found, element, &modalities)?;
         let id = |index: usize| {
             chosen
                 .variants
                 .get(index)
                 .map_or_else(String::new, driftworld_curriculum::Choice::id)
         };
+        refuse_others(&found, element, &modalities, &id(0))?;
         let proven = found.variants.iter().enumerate().map(|(index, one)| ProvenVariant {
             variant: id(index + 1),
             measured: one.elements(),
@@ -65,8 +65,13 @@ impl DesignRequest {
     }
 }
 
-/// Refuses a probe whose variants change an element other than the probed one.
-fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modality]) -> Result<(), Failure> {
+/// Refuses a probe whose variants change an element other than the probed one. `base` is the first variant, as it was named.
+fn refuse_others(
+    found: &ElementsOutcome,
+    element: Element,
+    modalities: &[Modality],
+    base: &str,
+) -> Result<(), Failure> {
     let others = found.variants.iter().filter_map(|variant| {
         let other = variant.measured.iter().find(|own| !element.covers(own.element))?;
         Some(format!(
@@ -90,7 +95,7 @@ fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modali
         "{}\nthis is for a learner with the images {images}; correct \"affects\" in the task (see driftworld elements {}), name \
          other variants, or choose other images with {}",
         others.join("\n"),
-        found.task,
+        tasks::split(base).0,
         argument("modalities")
     )))
 }

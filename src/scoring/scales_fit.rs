@@ -19,7 +19,9 @@ pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
     tasks.dedup();
     let scored: Vec<String> = scales.keys().map(|name| scored_name(name, options)).collect();
     let missing: Vec<&String> = tasks.iter().filter(|task| !scored.contains(task)).collect();
-    let near = |task: &str| did_you_mean(task, scored.iter().map(String::as_str));
+    // Names of other tasks of the log are no misspellings.
+    let others = || scored.iter().filter(|name| !tasks.contains(name)).map(String::as_str);
+    let near = |task: &str| did_you_mean(task, others());
     let has_similar_name = |task: &&&String| !near(task).is_empty();
     let mut found = Vec::new();
     if missing.len() == tasks.len() {

@@ -139,6 +139,7 @@ fn generated_variants_are_in_the_scenario_at_the_stated_distances() {
         folder.path(),
         "curriculum park.json --probe reward --variants 5 -o reward.json",
     );
+    table.says("distance in reward from the last learned");
     let scenario = scenario(&folder.path().join("reward.json"));
     let first = &regimes(&scenario, "learning")[0];
     assert_eq!((name(first).as_str(), first.get("values")), ("blue", None));

@@ -155,7 +155,7 @@ impl Curriculum {
         for scenario in &designed.scenarios {
             output::write_or_print(&self.output, &scenario.to_json_pretty())?;
             if !output::is_stdout(&self.output) && !self.json {
-                output::line(blocks(scenario, Some((matrix, designed.chosen.by))))?;
+                output::line(blocks(scenario, Some((matrix, &designed.chosen.measure()))))?;
             }
         }
         if let Some(path) = &self.plot {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::curriculum::{Choice, Picked, Steps};
 use crate::design::{Evidence, PairOptimum};
 use crate::similarity::{Distance, DistanceMatrix};
-use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Variant};
+use crate::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
 
 use crate::Failure;
 use crate::table::table;
@@ -179,7 +179,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
         let word = if pair.optimum.turned { "yes" } else { "no" };
         let points = |points: f64| format!("{:.1}", points + 0.0);
         [
-            format!("{}, {}", pair.a, pair.b),
+            format!("{}, {}", tasks::label_of(&pair.a), tasks::label_of(&pair.b)),
             word.to_owned(),
             points(pair.optimum.regret),
             points(pair.optimum.regret_in_base),
@@ -194,9 +194,9 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
 }
 
 /// The blocks of a scenario as a table, with the distance from the end of each learning block to the start of the next.
-pub(super) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)>) -> String {
+pub(super) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, &str)>) -> String {
     let matrix = measured.map(|(matrix, _)| matrix);
-    let by = measured.map_or_else(String::new, |(_, by)| format!(" by {}", by.name()));
+    let by = measured.map_or_else(String::new, |(_, by)| format!(" {by}"));
     let mut before: Option<(usize, usize, f64)> = None;
     let tasks = names_of_tasks(scenario);
     let rows = scenario.blocks.iter().enumerate().map(|(index, block)| {
@@ -295,7 +295,7 @@ mod tests {
         .join(", ");
         let text = format!(r#"{{ "name": "s", "blocks": [{blocks_of}] }}"#);
         let scenario = Scenario::from_json("s", &text).unwrap();
-        let shown = blocks(&scenario, Some((&matrix, By::Parameters)));
+        let shown = blocks(&scenario, Some((&matrix, "by parameters")));
         let steps: Vec<&str> = shown
             .lines()
             .skip(2)

@@ -52,7 +52,7 @@ pub(crate) struct Metrics {
     ///
     /// With a power of 80 %, by Welch's t test at 5 %, given how much these lifetimes vary. Also reports the smallest
     /// difference that the given number of lifetimes can show.
-    #[arg(long, value_name = "DELTA")]
+    #[arg(long, value_name = "DELTA", allow_negative_numbers = true)]
     power: Option<f64>,
     /// Store the logs as experts in --ste-data, and score nothing.
     ///
