@@ -183,6 +183,9 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
     assert [set(names) for names in started] == [{"find_objects#red"}, {"find_objects#blue"}]
     with pytest.raises(ValueError, match="set_options: found 'varaint'"):
         envs.set_options({"varaint": "red"})
+    for few in ([], [{}], [{}] * 3):
+        with pytest.raises(ValueError, match=f"set_options: found a list of {len(few)}, expected"):
+            envs.set_options(few)
     # One invalid request among several changes nothing, and is not applied again.
     envs.set_options({"variant": "near"})
     with pytest.raises(driftworld.errors.TaskError, match="nope"):

@@ -114,6 +114,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             options: Options of a single environment's reset: one dictionary for all, or a list with one for each, such
                 as ``[{"variant": "red"}, {"variant": "blue"}]``. The next :meth:`reset` applies them too.
         """
+        if options is not None and not isinstance(options, dict) and len(options) != self.num_envs:
+            raise ValueError(f"set_options: found a list of {len(options)}, expected one dictionary, or a list of {self.num_envs}")
         super().set_options(cast(Any, options))
         groups = self._groups()
         try:
