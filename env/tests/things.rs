@@ -2,7 +2,7 @@
 
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
-    Delivery, Door, EndCondition, Portable, StateFeature, Stimulus, Switch, SwitchAction, WorldDraft,
+    Delivery, Door, EndCondition, Object, Portable, Respawn, StateFeature, Stimulus, Switch, SwitchAction, WorldDraft,
 };
 
 use crate::fixtures::{key, start, thing, wall_of};
@@ -277,4 +277,120 @@ fn carried_target_counts_only_once_put_down() {
         (0.0, 1.0),
         "and not for being put down"
     );
+}
+
+/// An agent that carries one thing, and an object that it has at once.
+fn carrier(objects: Vec<Object>) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [40.0, 40.0];
+    (world.agent_params.carry_limit, world.objects) = (1, objects);
+    world
+}
+
+/// A key 1 m ahead that is picked up on contact.
+fn key_on_the_way() -> Object {
+    let mut key = key("k", [0.0, 1.0]);
+    key.solid = false;
+    key.portable.as_mut().expect("it is portable").on = vec![Stimulus::AgentCollide];
+    key
+}
+
+#[test]
+fn key_consumed_in_the_time_step_of_an_interaction_is_not_put_down() {
+    let mut gate = thing("door", "gate", [0.0, 8.0]);
+    gate.range_stimulus_distance = 3.5;
+    gate.door = Some(Door {
+        key: Some("k".to_owned()),
+        opens_on: vec![Stimulus::AgentInRange],
+        ..Door::default()
+    });
+    let mut key = key_on_the_way();
+    key.portable.as_mut().expect("it is portable").consumed = true;
+    let world = carrier(vec![gate, key]);
+    let opened = (0..100).find(|&before| {
+        let mut environment = start(world.clone());
+        steps(&mut environment, AHEAD, before);
+        let events = effects(&steps(&mut environment, Action::Continuous([2.0, 0.0, 1.0]), 1));
+        let opens = events.contains(&(0, Effect::Opened));
+        assert!(
+            !opens || !environment.objects()[1].present && !events.contains(&(1, Effect::PutDown)),
+            "{events:?}"
+        );
+        opens
+    });
+    assert!(
+        opened.is_some(),
+        "no interaction fell into the step in which the door opened"
+    );
+}
+
+#[test]
+fn open_door_put_down_after_resuming_is_open() {
+    let mut leaf = thing("door", "gate", [0.0, 3.0]);
+    leaf.range_stimulus_distance = 2.6;
+    leaf.door = Some(Door {
+        opens_on: vec![Stimulus::AgentInRange],
+        ..Door::default()
+    });
+    leaf.portable = Some(Portable {
+        on: vec![Stimulus::AgentInteract],
+        ..Portable::default()
+    });
+    let mut environment = start(carrier(vec![leaf]));
+    while !environment.objects()[0].open {
+        steps(&mut environment, AHEAD, 1);
+    }
+    while !environment.objects()[0].carried {
+        steps(&mut environment, AHEAD, 1);
+        steps(&mut environment, USE, 1);
+    }
+    let mut resumed = Environment::new(environment.state());
+    for action in [USE].into_iter().chain([AHEAD; 30]) {
+        let [here, there] = [&mut environment, &mut resumed].map(|one| (steps(one, action, 1), one.agent().position));
+        assert_eq!(here, there);
+    }
+    assert!(!environment.objects()[0].carried);
+}
+
+#[test]
+fn carried_things_are_teleported_with_the_agent() {
+    let mut world = carrier(vec![key_on_the_way()]);
+    let zone = r#"{ "disc": { "center": [0, 5], "radius": 1 }, "teleport": [10, 10] }"#;
+    world.environment_params.zones = vec![serde_json::from_str(zone).expect("it is a zone")];
+    let mut environment = start(world);
+    let follows =
+        |environment: &Environment| assert_eq!(environment.objects()[0].position, environment.agent().position);
+    while !environment.objects()[0].carried {
+        steps(&mut environment, AHEAD, 1);
+    }
+    while north(&environment) < 9.0 {
+        steps(&mut environment, AHEAD, 1);
+        follows(&environment);
+    }
+    environment.teleport([-3.0, 2.0], 0.0).expect("the place is free");
+    follows(&environment);
+}
+
+#[test]
+fn things_return_after_their_delay_whatever_the_time_step() {
+    for (time_step, hundredths) in [(0.02, 2), (0.05, 5), (0.1, 10)] {
+        for count in 1..=60 {
+            let mut berry = thing("cube", "berry", [0.0, 1.2]);
+            berry.destroy_stimulus = vec![Stimulus::AgentInteract];
+            berry.respawn = Some(Respawn {
+                delay: f64::from(count * hundredths) / 100.0,
+                radius: 0.0,
+            });
+            let mut world = carrier(vec![berry]);
+            world.agent_params.time_step = time_step;
+            let mut environment = start(world);
+            steps(&mut environment, USE, 1);
+            assert!(!environment.objects()[0].present);
+            let waited = (1..100).find(|_| {
+                steps(&mut environment, WAIT, 1);
+                environment.objects()[0].present
+            });
+            assert_eq!(waited, Some(count), "{count} steps of {time_step} s");
+        }
+    }
 }

@@ -7,6 +7,7 @@ use driftworld_spec::{MAX_OBJECTS, Object};
 use super::environment::Environment;
 use super::interactions::init_contacts;
 use super::state::wrapped;
+use super::things::follow;
 use super::walls;
 use crate::EnvError;
 
@@ -103,6 +104,7 @@ impl Environment {
         agent.position = position.map(|metres| metres as f32);
         agent.heading_deg = wrapped(heading_deg.rem_euclid(360.0) as f32);
         agent.velocity = [0.0; 2];
+        follow(&mut self.state);
         init_contacts(&self.world, &mut self.state, &mut self.views);
         self.views.zones.locate(&mut self.state);
         Ok(())

@@ -6,6 +6,7 @@ use driftworld_spec::{Stimulus, Trigger, World};
 
 use super::action::Intent;
 use super::contact::RELEASE;
+use super::door_state::ticks_of;
 use super::doors::advance_doors;
 use super::encounters::Encounters;
 use super::energy::give_energy;
@@ -88,7 +89,8 @@ pub(super) fn apply_stimuli(
         }
     }
     if state.has_things {
-        if let Some((index, place)) = put_down_now {
+        // A key may have been consumed by a door in this very time step.
+        if let Some((index, place)) = put_down_now.filter(|(index, _)| state.carried.contains(index)) {
             put_down(world, state, views, index, place);
             let sim = SimRef { world, state, views };
             // Being near the object after putting it down is not an event.
@@ -244,8 +246,8 @@ fn trigger(
         apply_effect(world, state, views, index, effect);
     }
     if let (true, Some(respawn)) = (destroyed, &object.respawn) {
-        let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
-        state.returning.push((index, state.ticks + ticks.max(1)));
+        let ticks = ticks_of(respawn.delay, world.agent_params.time_step);
+        state.returning.push((index, state.ticks + ticks));
     }
     Some(Event {
         object: index,

@@ -26,6 +26,7 @@ impl CollisionWorld {
                 if let Some(number) = self.set_aside.iter().position(|(other, _)| *other == index) {
                     let (_, handle) = self.set_aside.swap_remove(number);
                     self.handles[index as usize] = Some(handle);
+                    self.set_solid(handle, solid);
                     self.put(handle, item.position, item.heading_deg);
                 } else {
                     self.add_object(index, item, solid);

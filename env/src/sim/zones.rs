@@ -8,6 +8,7 @@ use super::event::Step;
 use super::footprint::Point;
 use super::sim_ref::SimRef;
 use super::state::SimState;
+use super::things::follow;
 use super::views::Views;
 use super::walls::agent_obstacle;
 
@@ -65,6 +66,7 @@ pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, st
     agent.position = position.map(|metres| metres as f32);
     agent.velocity = [0.0; 2];
     let here = agent.position.map(f64::from);
+    follow(state);
     for (area, inside) in zones.0.iter().zip(&mut state.inside) {
         let was_inside = std::mem::replace(inside, area.contains(here));
         if *inside && !was_inside {
