@@ -2,6 +2,8 @@
 
 use driftworld_spec::Door;
 
+use super::ticks::ticks_of;
+
 /// A door's state besides being open or closed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DoorState {
@@ -24,10 +26,4 @@ impl DoorState {
                 .map(|seconds| ticks_of(seconds, time_step)),
         }
     }
-}
-
-/// Number of time steps until `seconds` have passed: at least one.
-pub(super) fn ticks_of(seconds: f64, time_step: f64) -> u64 {
-    // Subtracts a little, because 0.1 is inexact in binary, but 60 s must be 600 time steps of 0.1 s.
-    ((seconds / time_step - 1e-6).ceil() as u64).max(1)
 }

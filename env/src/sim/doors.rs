@@ -3,9 +3,9 @@
 use driftworld_spec::{Door, MotionModel, World};
 
 use super::collision_world::slot;
-use super::door_state::ticks_of;
 use super::groups::{GHOST, SOLID};
 use super::state::SimState;
+use super::ticks::ticks_of;
 use super::views::Views;
 
 /// Minimum overlap in metres at which a body counts as standing in a door.

@@ -6,7 +6,6 @@ use driftworld_spec::{Stimulus, Trigger, World};
 
 use super::action::Intent;
 use super::contact::RELEASE;
-use super::door_state::ticks_of;
 use super::doors::advance_doors;
 use super::encounters::Encounters;
 use super::energy::give_energy;
@@ -16,6 +15,7 @@ use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
 use super::things::{apply_effect, effect_of, follow, put_down, put_down_place, reacting_object, reacts_to_stimulus};
+use super::ticks::ticks_of;
 use super::views::Views;
 
 /// Lists reused by each time step.

@@ -44,6 +44,7 @@ mod termination;
 #[cfg(test)]
 mod tests;
 mod things;
+mod ticks;
 mod transplant;
 mod views;
 mod walls;

@@ -41,7 +41,7 @@ impl Environment {
     /// # Example
     /// ```
     /// use driftworld_env::{Action, Environment};
-    /// use driftworld_spec::{AgentParams, Object, World};
+    /// use driftworld_spec::World;
     /// let mut environment = Environment::new(World::default());
     /// let start = environment.snapshot();
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
