@@ -1,9 +1,12 @@
 //! Writes tables and summaries of trial draws.
 
+use std::path::Path;
+
 use driftworld_curriculum::{Failed, Trial};
-use driftworld_text::when;
+use driftworld_text::{ShownPath, when};
 
 use crate::table::table;
+use crate::tasks;
 
 /// Maximum number of failures listed.
 const MAX_LISTED: usize = 10;
@@ -74,7 +77,7 @@ pub(crate) fn summary(trials: &[Trial]) -> Option<String> {
 }
 
 /// The worlds in which the planner missed a possible success, of the task in this file; `None` if it missed none.
-pub(crate) fn unfinished(trial: &Trial, file: &str) -> Option<String> {
+pub(crate) fn unfinished(trial: &Trial, file: &Path) -> Option<String> {
     let expert = trial
         .expert
         .as_ref()
@@ -86,13 +89,37 @@ pub(crate) fn unfinished(trial: &Trial, file: &str) -> Option<String> {
         ""
     };
     let (variant, seed) = (&trial.variant, trial.seed);
-    let own = variant.rsplit('#').next().unwrap_or_default();
+    let own = tasks::split(variant).1.unwrap_or_default();
     Some(format!(
         "{variant}: the planner succeeded in {} of {} worlds, but not in {}{more}; look at one: driftworld render \
-         '{file}#{own}' --seed {seed} --index {} -o world.png",
+         '{}#{own}' --seed {seed} --index {} -o world.png",
         expert.succeeded,
         expert.worlds,
         listed.join(", "),
+        file.shown(),
         listed.first().map_or("0", String::as_str)
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_curriculum::Finished;
+
+    #[test]
+    fn suggested_command_names_the_file_of_the_task() {
+        let trial = Trial {
+            variant: "park#red".to_owned(),
+            seed: 7,
+            expert: Some(Finished {
+                worlds: 4,
+                succeeded: 3,
+                failed: vec![2],
+            }),
+            ..Trial::default()
+        };
+        let said = unfinished(&trial, Path::new("tasks/my park.json")).expect("a world was missed");
+        let command = "driftworld render 'tasks/my park.json#red' --seed 7 --index 2 -o world.png";
+        assert!(said.starts_with("park#red: ") && said.ends_with(command), "{said}");
+    }
 }

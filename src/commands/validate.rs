@@ -264,7 +264,7 @@ impl Found {
     }
 
     /// Warnings from worlds and experiments, as sentences.
-    fn cautions(&self, file: &str) -> Vec<String> {
+    fn cautions(&self, file: &Path) -> Vec<String> {
         let idle = self.elements.iter().flat_map(ElementsOutcome::warnings);
         let all = self.remarks.iter().cloned().chain(idle);
         all.chain(self.trials.iter().filter_map(|trial| trials::unfinished(trial, file)))
@@ -299,7 +299,7 @@ impl Verdict {
             printable(&documents::name_of(&self.path)).into_owned(),
             checked.kind.name(),
         );
-        for warning in &found.cautions(&path) {
+        for warning in &found.cautions(&self.path) {
             output::warning(format!("{path}: {warning}"));
         }
         if !found.is_sound() {
@@ -349,12 +349,7 @@ impl Verdict {
             report["worlds"] = json!(found.trials);
         }
         if let Some(warnings) = report["warnings"].as_array_mut() {
-            warnings.extend(
-                found
-                    .cautions(&printable(&documents::name_of(&self.path)))
-                    .into_iter()
-                    .map(Value::from),
-            );
+            warnings.extend(found.cautions(&self.path).into_iter().map(Value::from));
         }
         if !found.elements.is_empty() {
             let contradiction = |message: &str| json!({ "code": "task/elements", "message": message });

@@ -50,16 +50,24 @@ pub enum Evidence {
     },
 }
 
+impl Evidence {
+    /// The picked variants, and the element that is measured if not all are.
+    pub(super) fn parts(&self) -> (&[Picked], Option<Element>) {
+        match self {
+            Self::Probe { picked, element } => (picked, Some(*element)),
+            Self::Steps { picked, wanted } => (picked, wanted.element),
+        }
+    }
+}
+
 impl Chosen {
     /// What the distances are, such as "by parameters" or, of a probe, "in reward".
     pub(crate) fn measure(&self) -> String {
-        match &self.evidence {
-            Some(Evidence::Probe { element, .. }) => format!("in {}", element.name()),
-            Some(Evidence::Steps { wanted, .. }) if let Some(element) = wanted.element => {
-                format!("in {}", element.name())
-            }
-            _ => format!("by {}", self.by.name()),
-        }
+        let element = self.evidence.as_ref().and_then(|evidence| evidence.parts().1);
+        element.map_or_else(
+            || format!("by {}", self.by.name()),
+            |element| format!("in {}", element.name()),
+        )
     }
 
     /// The variants in an order.
@@ -81,7 +89,7 @@ impl DesignRequest {
             let (task, pool, anchor) = self.one_task(&named)?;
             let picked = steps(&task, &pool, &anchor, &wanted)?;
             let order = (0..picked.len()).collect();
-            return chosen(Evidence::Steps { picked, wanted }, self.probe, order);
+            return chosen(Evidence::Steps { picked, wanted }, order);
         }
         if let Some(element) = self.probe {
             let (task, pool, anchor) = self.one_task(&named)?;
@@ -113,7 +121,7 @@ impl DesignRequest {
                     order => arrange(&matrix, order.map_or(Some(Method::Outward), |order| order.0), 0)?,
                 }
             };
-            return chosen(Evidence::Probe { picked, element }, Some(element), order);
+            return chosen(Evidence::Probe { picked, element }, order);
         }
         let by = self
             .by
@@ -218,8 +226,8 @@ pub(super) fn is_among(variants: &[(String, Variant)], task: &str, name: &str) -
         .any(|(other, variant)| other == task && variant.name() == name)
 }
 
-fn chosen(evidence: Evidence, element: Option<Element>, order: Vec<usize>) -> Result<Chosen, Failure> {
-    let (Evidence::Probe { picked, .. } | Evidence::Steps { picked, .. }) = &evidence;
+fn chosen(evidence: Evidence, order: Vec<usize>) -> Result<Chosen, Failure> {
+    let (picked, element) = evidence.parts();
     Ok(Chosen {
         variants: picked.iter().map(|picked| picked.choice.clone()).collect(),
         matrix: distances(picked, element)?,

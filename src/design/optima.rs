@@ -15,7 +15,7 @@ const WORLDS: u64 = 16;
 /// Whether two variants call for different behaviour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairOptimum {
-    /// The variant that is learned first.
+    /// The variant that is learned first, such as `find_objects#red`.
     pub a: String,
     /// The other variant.
     pub b: String,
@@ -43,8 +43,8 @@ impl DesignRequest {
             for other in first..index {
                 let [a, b] = [&picked[order[other]], &picked[order[index]]];
                 found.push(PairOptimum {
-                    a: a.choice.id(),
-                    b: b.choice.id(),
+                    a: a.label(),
+                    b: b.label(),
                     optimum: Optimum::measure(&a.variant, &b.variant, self.seed, WORLDS, &catalogue)?,
                 });
             }

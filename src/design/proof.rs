@@ -16,12 +16,8 @@ impl DesignRequest {
     /// # Errors
     /// [`Failure`] that lists every variant that also changes something else.
     pub(super) fn prove(&self, chosen: &Chosen) -> Result<Option<ScenarioProof>, Failure> {
-        let (picked, element) = match &chosen.evidence {
-            Some(Evidence::Probe { picked, element }) => (picked, Some(*element)),
-            Some(Evidence::Steps { picked, wanted }) => (picked, wanted.element),
-            None => return Ok(None),
-        };
-        let Some(element) = element.filter(|_| self.worlds > 0) else {
+        let tested = chosen.evidence.as_ref().filter(|_| self.worlds > 0);
+        let Some((picked, Some(element))) = tested.map(Evidence::parts) else {
             return Ok(None);
         };
         let variants: Vec<Variant> = picked.iter().map(|one| one.variant.clone()).collect();
@@ -47,7 +43,7 @@ impl DesignRequest {
                 .get(index)
                 .map_or_else(String::new, driftworld_curriculum::Choice::id)
         };
-        refuse_others(&found, element, &modalities, &id(0))?;
+        refuse_others(&found, element, &modalities, tasks::split(&id(0)).0)?;
         let proven = found.variants.iter().enumerate().map(|(index, one)| ProvenVariant {
             variant: id(index + 1),
             measured: one.elements(),
@@ -65,13 +61,8 @@ impl DesignRequest {
     }
 }
 
-/// Refuses a probe whose variants change an element other than the probed one. `base` is the first variant, as it was named.
-fn refuse_others(
-    found: &ElementsOutcome,
-    element: Element,
-    modalities: &[Modality],
-    base: &str,
-) -> Result<(), Failure> {
+/// Refuses a probe whose variants change an element other than the probed one. `task` is the task as it was named.
+fn refuse_others(found: &ElementsOutcome, element: Element, images: &[Modality], task: &str) -> Result<(), Failure> {
     let others = found.variants.iter().filter_map(|variant| {
         let other = variant.measured.iter().find(|own| !element.covers(own.element))?;
         Some(format!(
@@ -90,12 +81,12 @@ fn refuse_others(
     if others.is_empty() {
         return Ok(());
     }
-    let images = serde_json::to_string(modalities)?;
+    let images = serde_json::to_string(images)?;
     Err(Failure::input(format!(
         "{}\nthis is for a learner with the images {images}; correct \"affects\" in the task (see driftworld elements {}), name \
          other variants, or choose other images with {}",
         others.join("\n"),
-        tasks::split(base).0,
+        task,
         argument("modalities")
     )))
 }

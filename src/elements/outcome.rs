@@ -129,7 +129,7 @@ impl ElementsOutcome {
         each.map(|contradiction| contradiction.message.as_str())
     }
 
-    /// Parameters that a variant sets without effect, and elements that a parameter declares in vain, as sentences.
+    /// Parameters that a variant sets without effect, and elements that a parameter declares but no variant shows, as sentences.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.idle().chain(self.only_declared())
     }
@@ -160,16 +160,16 @@ impl ElementsOutcome {
     }
 
     fn only_declared(&self) -> impl Iterator<Item = String> {
-        self.unmeasured.iter().map(|vain| {
-            let letters: Vec<&str> = vain.elements.iter().map(|element| element.letter()).collect();
+        self.unmeasured.iter().map(|one| {
+            let letters: Vec<&str> = one.elements.iter().map(|element| element.letter()).collect();
             format!(
                 "{}: {} declares {}, which differed from {} in none of the variants that change it ({}): remove it from \"affects\"; \
                  or, if it shows later or in other worlds, give --steps more than {} and --worlds more than {}",
                 self.task,
-                vain.parameter,
+                one.parameter,
                 letters.join(" "),
                 self.base,
-                vain.variants.join(", "),
+                one.variants.join(", "),
                 self.steps,
                 self.worlds,
             )

@@ -41,6 +41,11 @@ impl Picked {
         self.choice.name.is_some()
     }
 
+    /// Its name with its task's own, such as `find_objects#red`.
+    pub fn label(&self) -> String {
+        format!("{}#{}", self.variant.task().name(), self.choice.name())
+    }
+
     /// The distance to another variant, element by element.
     ///
     /// # Errors

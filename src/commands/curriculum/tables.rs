@@ -34,7 +34,7 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
     }
     Ok(format!(
         "distances from {}, probing the {}: 0 means exactly 0, - means that nothing could differ\n{}\n{}",
-        shown(anchor),
+        anchor.label(),
         element.name(),
         table(headings(), rows, &[2, 3, 4, 5, 6]),
         made_values(order.iter().map(|index| &picked[*index]))
@@ -73,14 +73,9 @@ fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
             .iter()
             .map(|(name, value)| format!("{name} = {value}"));
         let values: Vec<String> = values.collect();
-        lines = format!("{lines}{} sets {}\n", shown(one), values.join(", "));
+        lines = format!("{lines}{} sets {}\n", one.label(), values.join(", "));
     }
     if lines.is_empty() { lines } else { format!("\n{lines}") }
-}
-
-/// The name of a picked variant.
-fn shown(picked: &Picked) -> String {
-    format!("{}#{}", picked.variant.task().name(), picked.choice.name())
 }
 
 fn headings() -> impl Iterator<Item = &'static str> {
@@ -90,7 +85,7 @@ fn headings() -> impl Iterator<Item = &'static str> {
 fn row(picked: &Picked, apart: &Distance) -> Vec<String> {
     let is = if picked.is_made() { "made" } else { "declared" };
     let elements = Element::ALL.map(|element| apart.element(element).map_or_else(|| "-".to_owned(), exact));
-    [shown(picked), is.to_owned()].into_iter().chain(elements).collect()
+    [picked.label(), is.to_owned()].into_iter().chain(elements).collect()
 }
 
 /// A distance with four decimals; "0" without decimals only if it is exactly 0.
@@ -179,7 +174,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
         let word = if pair.optimum.turned { "yes" } else { "no" };
         let points = |points: f64| format!("{:.1}", points + 0.0);
         [
-            format!("{}, {}", tasks::label_of(&pair.a), tasks::label_of(&pair.b)),
+            format!("{}, {}", pair.a, pair.b),
             word.to_owned(),
             points(pair.optimum.regret),
             points(pair.optimum.regret_in_base),

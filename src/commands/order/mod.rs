@@ -152,6 +152,7 @@ impl Order {
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
         let asked = self.ordering.labelled();
+        // A wrong --start or --end is an error of the command, not of each method.
         asked.options(matrix, self.seed)?;
         let comparison = Comparison::new(asked.target_step.is_some(), |method| {
             let request = OrderRequest {
