@@ -296,32 +296,32 @@ fn key_on_the_way() -> Object {
 }
 
 #[test]
-fn key_consumed_in_the_time_step_of_an_interaction_is_not_put_down() {
-    let mut gate = thing("door", "gate", [0.0, 8.0]);
-    gate.range_stimulus_distance = 3.5;
-    gate.door = Some(Door {
-        key: Some("k".to_owned()),
-        opens_on: vec![Stimulus::AgentInRange],
-        ..Door::default()
-    });
-    let mut key = key_on_the_way();
-    key.portable.as_mut().expect("it is portable").consumed = true;
-    let world = carrier(vec![gate, key]);
-    let opened = (0..100).find(|&before| {
-        let mut environment = start(world.clone());
-        steps(&mut environment, AHEAD, before);
-        let events = effects(&steps(&mut environment, Action::Continuous([2.0, 0.0, 1.0]), 1));
-        let opens = events.contains(&(0, Effect::Opened));
+fn key_used_in_the_time_step_of_an_interaction_is_put_down_unless_consumed() {
+    for consumed in [false, true] {
+        let mut gate = thing("door", "gate", [0.0, 8.0]);
+        gate.range_stimulus_distance = 3.5;
+        gate.door = Some(Door {
+            key: Some("k".to_owned()),
+            opens_on: vec![Stimulus::AgentInRange],
+            ..Door::default()
+        });
+        let mut key = key_on_the_way();
+        key.portable.as_mut().expect("it is portable").consumed = consumed;
+        let world = carrier(vec![gate, key]);
+        let opened = (0..100).find(|&before| {
+            let mut environment = start(world.clone());
+            steps(&mut environment, AHEAD, before);
+            let events = effects(&steps(&mut environment, Action::Continuous([2.0, 0.0, 1.0]), 1));
+            let opens = events.contains(&(0, Effect::Opened));
+            let lies = (events.contains(&(1, Effect::PutDown)), environment.objects()[1].present);
+            assert!(!opens || lies == (!consumed, !consumed), "{consumed}: {events:?}");
+            opens
+        });
         assert!(
-            !opens || !environment.objects()[1].present && !events.contains(&(1, Effect::PutDown)),
-            "{events:?}"
+            opened.is_some(),
+            "no interaction fell into the step in which the door opened"
         );
-        opens
-    });
-    assert!(
-        opened.is_some(),
-        "no interaction fell into the step in which the door opened"
-    );
+    }
 }
 
 #[test]
@@ -373,12 +373,13 @@ fn carried_things_are_teleported_with_the_agent() {
 
 #[test]
 fn things_return_after_their_delay_whatever_the_time_step() {
-    for (time_step, hundredths) in [(0.02, 2), (0.05, 5), (0.1, 10)] {
-        for count in 1..=60 {
+    for (time_step, thousandths) in [(0.02, 20), (0.05, 50), (0.1, 100)] {
+        // Whole and half numbers of time steps: between two, it returns at the later one.
+        for halves in 1..=120 {
             let mut berry = thing("cube", "berry", [0.0, 1.2]);
             berry.destroy_stimulus = vec![Stimulus::AgentInteract];
             berry.respawn = Some(Respawn {
-                delay: f64::from(count * hundredths) / 100.0,
+                delay: f64::from(halves * thousandths / 2) / 1000.0,
                 radius: 0.0,
             });
             let mut world = carrier(vec![berry]);
@@ -390,7 +391,7 @@ fn things_return_after_their_delay_whatever_the_time_step() {
                 steps(&mut environment, WAIT, 1);
                 environment.objects()[0].present
             });
-            assert_eq!(waited, Some(count), "{count} steps of {time_step} s");
+            assert_eq!(waited, Some((halves + 1) / 2), "{halves} halves of {time_step} s");
         }
     }
 }

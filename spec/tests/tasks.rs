@@ -183,3 +183,20 @@ fn requirement_without_parameters_that_never_holds_is_refused() {
         );
     }
 }
+
+#[test]
+fn arc_across_north_ends_above_360() {
+    let task = |range: &str| {
+        let parameter = format!(
+            r#"{{ "role": "variant", "type": "heading", "affects": ["S"], "range": {range}, "default": 350 }}"#
+        );
+        let world = r#"{ "agent_params": { "heading": { "param": "faces" } } }"#;
+        let text = format!(r#"{{ "name": "t", "parameters": {{ "faces": {parameter} }}, "world": {world} }}"#);
+        TaskSpec::from_json("t", &text)
+    };
+    task("[300, 420]").expect("the low end is below the high end");
+    let error = task("[300, 60]")
+        .expect_err("the low end is above the high end")
+        .to_string();
+    assert!(error.ends_with("; an arc across north is [300, 420]"), "{error}");
+}

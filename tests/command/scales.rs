@@ -186,3 +186,31 @@ fn scales_that_fit_no_task_are_reported() {
     let stderr = warned(r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}}}"#);
     assert!(!stderr.contains("scales:"), "{stderr}");
 }
+
+#[test]
+fn only_names_that_the_log_lacks_are_suggested() {
+    let folder = scratch();
+    let rows_of = |task| (0..4).map(move |world| (0, BlockType::Test, task, world, f64::from(world)));
+    let rows: Vec<_> = ["orchard_dim", "orchard_dip"].into_iter().flat_map(rows_of).collect();
+    write(&folder.path().join("life"), &rows);
+    for (other, is_suggested) in [("meadow", false), ("orchard_dit", true)] {
+        let anchors = r#"{"floor": 0, "ceiling": 10}"#;
+        let scales = format!(r#"{{"scales": {{"orchard_dip": {anchors}, "{other}": {anchors}}}}}"#);
+        std::fs::write(folder.path().join("scales.json"), scales).expect("the folder is writable");
+        let run = output(&mut driftworld_in(
+            folder.path(),
+            &["metrics", "life", "--scales", "scales.json"],
+        ));
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(
+            stderr.contains("did you mean \"orchard_dit\"?"),
+            is_suggested,
+            "{stderr}"
+        );
+        assert_eq!(
+            stderr.matches("did you mean").count(),
+            usize::from(is_suggested),
+            "{stderr}"
+        );
+    }
+}
